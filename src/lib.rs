@@ -1,0 +1,3 @@
+//! hyc: a language, a compiler and a simulator for multi-agent hybrid systems.
+
+pub mod base;
