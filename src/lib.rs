@@ -1,3 +1,4 @@
 //! hyc: a language, a compiler and a simulator for multi-agent hybrid systems.
 
 pub mod base;
+pub mod math;

@@ -1,0 +1,11 @@
+//! The arithmetic floor: what every operator of the language means, in numbers and in intervals.
+//!
+//! In: nothing but numbers. Out: [`Op`], the table of operators whose [`Op::eval`] is *the* meaning that the
+//! interpreter, constant folding and machine code share bit for bit; [`elementary`], the functions behind it.
+//! Promised: the same bits on every CPU and for every thread count, because nothing here looks at the CPU's
+//! features and no multiplication is fused into an addition unless it is written so.
+
+pub mod elementary;
+pub mod op;
+
+pub use op::{Binary, Op, Unary};
