@@ -1,0 +1,480 @@
+//! The product of this floor: a model in which every name is resolved, every expression typed, every constant evaluated.
+//!
+//! Flat data. Expressions lie in one arena, operands before their users. What follows a `param` or a top-level `let`
+//! without agents in it is already a number. Values are SI. Modes form a tree whose root (number 0) is the agent itself.
+
+use crate::base::{Arena, Idx, Span};
+use crate::math::Op;
+
+/// Names an [`Expr`].
+pub type ExprId = Idx<Expr>;
+/// Names a [`Function`].
+pub type FunctionId = Idx<Function>;
+/// Names an [`AgentType`].
+pub type TypeId = Idx<AgentType>;
+/// Names a [`Mode`] of one agent type.
+pub type ModeId = Idx<Mode>;
+/// Names an [`Interaction`].
+pub type InteractionId = Idx<Interaction>;
+/// Names a [`Binder`].
+pub type BinderId = Idx<Binder>;
+
+/// A whole program, ready for calculus.
+#[derive(Clone, Debug, Default)]
+pub struct Model {
+    /// Top-level parameters with the values they have in this run, in order of declaration.
+    pub params: Vec<Param>,
+    /// Functions; calls refer to them.
+    pub functions: Arena<Function>,
+    /// Agent types in order of declaration.
+    pub types: Arena<AgentType>,
+    /// Interactions in order of declaration.
+    pub interactions: Arena<Interaction>,
+    /// All expressions.
+    pub exprs: Arena<Expr>,
+    /// All agents that quantifiers bind.
+    pub binders: Arena<Binder>,
+    /// The agents at t = 0.
+    pub population: Population,
+    /// What `run { }` says.
+    pub run: Run,
+}
+
+/// A top-level `param`.
+#[derive(Clone, Debug)]
+pub struct Param {
+    /// Its name.
+    pub name: String,
+    /// Its type.
+    pub ty: Type,
+    /// The declared unit's text, if any.
+    pub unit: Option<String>,
+    /// Its value in this run, SI.
+    pub value: ParamValue,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// The value of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ParamValue {
+    /// A number, SI; booleans are 1 and 0.
+    Number(f64),
+    /// A text.
+    Text(String),
+}
+
+/// The type of a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Type {
+    /// A real number.
+    Real,
+    /// A whole number, held as a real.
+    Int,
+    /// True or false, held as 1 or 0.
+    Bool,
+    /// An agent of this type that is always there.
+    Agent(TypeId),
+    /// An agent of this type, or `none`.
+    Link(TypeId),
+}
+
+/// An expression.
+#[derive(Clone, Debug)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// The type of its value.
+    pub ty: Type,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// What an expression is. Agents are named by expressions too: `SelfAgent`, `Participant`, `Bound`, `Link`, `Local`.
+#[derive(Clone, Debug)]
+pub enum ExprKind {
+    /// A number (SI), a boolean (1 or 0).
+    Number(f64),
+    /// The time of the run, s.
+    Time,
+    /// A parameter of the enclosing function, by position.
+    Local(usize),
+    /// The agent whose text this is.
+    SelfAgent,
+    /// A participant of the enclosing interaction: 0 or 1.
+    Participant(usize),
+    /// The agent bound by a quantifier.
+    Bound(BinderId),
+    /// `none`.
+    NoAgent,
+    /// The agent that a link (number in its type) of an agent refers to; its type says whether it may be none.
+    Link(ExprId, usize),
+    /// A state of an agent.
+    State(ExprId, usize),
+    /// The rate of a state of an agent, `x'`.
+    Rate(ExprId, usize),
+    /// A discrete variable of an agent.
+    Discrete(ExprId, usize),
+    /// A parameter of an agent.
+    AgentParam(ExprId, usize),
+    /// A `let` of an agent.
+    Let(ExprId, usize),
+    /// An operator of arithmetic, comparison of numbers, logic; `Op::Select` is `if`.
+    Apply(Op, Vec<ExprId>),
+    /// A function of the program.
+    Call(FunctionId, Vec<ExprId>),
+    /// Whether a link leads to an agent (`if lead`, `not lead`).
+    Present(ExprId),
+    /// Whether two references name the same agent.
+    Same(ExprId, ExprId),
+    /// Whether an agent is in a mode or inside it.
+    Is(ExprId, ModeId),
+    /// `exists` and `forall` (the filter of `forall` is an implication).
+    Quantifier {
+        /// Which.
+        kind: Quantifier,
+        /// The name it binds.
+        binder: BinderId,
+        /// The set it ranges over: all living agents of this type ...
+        set: TypeId,
+        /// ... without `self` (in an interaction: without both participants).
+        other: bool,
+        /// `where`.
+        filter: Option<ExprId>,
+        /// What follows the colon.
+        body: ExprId,
+    },
+    /// `rising(condition)`.
+    Rising(ExprId),
+    /// `crossing(real)`.
+    Crossing(ExprId),
+}
+
+/// The quantifiers that make conditions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Quantifier {
+    /// At least one.
+    Exists,
+    /// All.
+    Forall,
+}
+
+/// A name bound by a quantifier.
+#[derive(Clone, Debug)]
+pub struct Binder {
+    /// As written.
+    pub name: String,
+    /// What it ranges over.
+    pub ty: TypeId,
+}
+
+/// `fn name(params) = body`; the body refers to the parameters by `ExprKind::Local`.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// Its name.
+    pub name: String,
+    /// Names and types of the parameters.
+    pub params: Vec<(String, Type)>,
+    /// The body.
+    pub body: ExprId,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// An agent type.
+#[derive(Clone, Debug)]
+pub struct AgentType {
+    /// Its name.
+    pub name: String,
+    /// Where it is declared.
+    pub span: Span,
+    /// Numeric parameters (constant during a run).
+    pub params: Vec<Variable>,
+    /// Continuous states.
+    pub states: Vec<Variable>,
+    /// Discrete variables.
+    pub discretes: Vec<Variable>,
+    /// Links; parameters of agent type are links that are never none.
+    pub links: Vec<Link>,
+    /// Algebraic definitions, each after those that it reads (of the same agent).
+    pub lets: Vec<Let>,
+    /// Recordable names in order of declaration.
+    pub declared: Vec<(String, VarRef)>,
+    /// The tree of modes; number 0 is the root, the agent itself.
+    pub modes: Arena<Mode>,
+    /// Transitions of all modes in order of declaration in the source.
+    pub transitions: Vec<Transition>,
+}
+
+/// A variable of an agent type.
+#[derive(Clone, Debug)]
+pub struct Variable {
+    /// Its name.
+    pub name: String,
+    /// Its type.
+    pub ty: Type,
+    /// The declared unit's text, if any.
+    pub unit: Option<String>,
+    /// What one declared unit is in SI: SI value = factor * value in the declared unit.
+    pub factor: f64,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// A link of an agent type.
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// Its name.
+    pub name: String,
+    /// What it leads to.
+    pub ty: TypeId,
+    /// A parameter of agent type: never none.
+    pub required: bool,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// `let name = value`.
+#[derive(Clone, Debug)]
+pub struct Let {
+    /// Its name.
+    pub name: String,
+    /// The mode it is declared in (the root for agent-level ones).
+    pub mode: ModeId,
+    /// Its definition, read with the agent as `self`.
+    pub value: ExprId,
+    /// Unit and factor for recording, as in [`Variable`].
+    pub unit: Option<String>,
+    /// See [`Variable::factor`].
+    pub factor: f64,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// A variable of an agent by kind and number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum VarRef {
+    /// A state.
+    State(usize),
+    /// A discrete variable.
+    Discrete(usize),
+    /// A parameter.
+    Param(usize),
+    /// A link (recorded as the agent's name).
+    Link(usize),
+    /// A let.
+    Let(usize),
+}
+
+/// A node of the tree of modes.
+#[derive(Clone, Debug)]
+pub struct Mode {
+    /// Its name; the root has the agent type's.
+    pub name: String,
+    /// `Drive.Cruise`; empty for the root.
+    pub path: String,
+    /// The mode that it is inside; none for the root.
+    pub parent: Option<ModeId>,
+    /// 0 for the root.
+    pub depth: usize,
+    /// Its submodes in order; empty for a leaf.
+    pub children: Vec<ModeId>,
+    /// The child entered by default; none for a leaf.
+    pub initial: Option<ModeId>,
+    /// State number, its rate, where the equation stands; without those of enclosing modes.
+    pub flow: Vec<(usize, ExprId, Span)>,
+    /// Domain of the flow.
+    pub invariants: Vec<Claim>,
+    /// Claims about the model.
+    pub asserts: Vec<Claim>,
+    /// Actions on entry.
+    pub entry: Vec<Action>,
+    /// Actions on exit.
+    pub exit: Vec<Action>,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// An `invariant` or an `assert`.
+#[derive(Clone, Debug)]
+pub struct Claim {
+    /// What is claimed.
+    pub condition: ExprId,
+    /// The text after it.
+    pub message: Option<String>,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// A transition of an agent or of an interaction.
+#[derive(Clone, Debug)]
+pub struct Transition {
+    /// As logs call it: `Car.left`, `Bump.pair`, `Car.Cruise->Follow`.
+    pub label: String,
+    /// The mode it belongs to; the root for agent-level ones and for interactions.
+    pub source: ModeId,
+    /// When it fires.
+    pub trigger: Trigger,
+    /// Higher first; 0 if not given.
+    pub priority: Option<ExprId>,
+    /// The mode it leads to, as written (its initial submode is found at run time).
+    pub target: Option<ModeId>,
+    /// What it does.
+    pub actions: Vec<Action>,
+    /// Agents bound by the guard's outermost `exists` that the actions may name.
+    pub witnesses: Vec<BinderId>,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// What makes a transition fire.
+#[derive(Clone, Debug)]
+pub enum Trigger {
+    /// `when guard`.
+    When(ExprId),
+    /// `after delay (when guard)`.
+    After(ExprId, Option<ExprId>),
+    /// `every period (when guard)`.
+    Every(ExprId, Option<ExprId>),
+}
+
+/// A step of a list of actions. All right-hand sides of one list read the state before it.
+#[derive(Clone, Debug)]
+pub enum Action {
+    /// `variable := value`; the agent is `SelfAgent` or a `Participant`; the variable a state or a discrete.
+    Assign {
+        /// Whose.
+        agent: ExprId,
+        /// Which.
+        variable: VarRef,
+        /// The new value.
+        value: ExprId,
+        /// Where it stands.
+        span: Span,
+    },
+    /// `if condition { } else { }`; `else if` is nested in `otherwise`.
+    If {
+        /// The test.
+        condition: ExprId,
+        /// If it holds.
+        then: Vec<Action>,
+        /// If not.
+        otherwise: Vec<Action>,
+    },
+    /// `a -> Mode` in an interaction.
+    Goto {
+        /// Which participant.
+        participant: usize,
+        /// Into which mode.
+        target: ModeId,
+        /// Where it stands.
+        span: Span,
+    },
+    /// Ends the run.
+    Stop {
+        /// Why.
+        reason: Option<String>,
+        /// Where it stands.
+        span: Span,
+    },
+}
+
+/// `interaction name(a: A, b: B) { }`.
+#[derive(Clone, Debug)]
+pub struct Interaction {
+    /// Its name.
+    pub name: String,
+    /// The names of the two participants.
+    pub participants: [String; 2],
+    /// Their types.
+    pub types: [TypeId; 2],
+    /// Its transitions; lets are inlined by reference to shared expressions.
+    pub transitions: Vec<Transition>,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// The agents at t = 0, numbered in `system` order.
+#[derive(Clone, Debug, Default)]
+pub struct Population {
+    /// The names of `system { }`.
+    pub blocks: Vec<Block>,
+    /// All agents in order.
+    pub agents: Vec<Instance>,
+}
+
+/// `name = Type[count](...)`.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// Its name.
+    pub name: String,
+    /// The type of its agents.
+    pub ty: TypeId,
+    /// The number of its first agent.
+    pub first: usize,
+    /// How many there are.
+    pub count: usize,
+    /// Written with brackets: its agents are called `name[k]`.
+    pub array: bool,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// One agent at t = 0, before entry actions.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// Its type.
+    pub ty: TypeId,
+    /// The leaf mode it starts in.
+    pub mode: ModeId,
+    /// Values of the parameters, SI.
+    pub params: Vec<f64>,
+    /// Values of the states, SI.
+    pub states: Vec<f64>,
+    /// Values of the discrete variables, SI; booleans 1 and 0.
+    pub discretes: Vec<f64>,
+    /// Numbers of the linked agents.
+    pub links: Vec<Option<usize>>,
+}
+
+/// What `run { }` says; the command line has already been laid over it.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// End of the run, s; none: only a `stop` ends it.
+    pub until: Option<f64>,
+    /// Relative tolerance.
+    pub tolerance: f64,
+    /// Absolute tolerance; none: as the relative one.
+    pub absolute: Option<f64>,
+    /// Seed of all randomness.
+    pub seed: u64,
+    /// Trajectories to write.
+    pub records: Vec<Record>,
+    /// The file of the event log.
+    pub events: Option<String>,
+    /// Where `run` stands; none if there is none.
+    pub span: Option<Span>,
+}
+
+impl Default for Run {
+    fn default() -> Self {
+        Self { until: None, tolerance: 1e-6, absolute: None, seed: 0, records: Vec::new(), events: None, span: None }
+    }
+}
+
+/// `record ... every d to "file"`.
+#[derive(Clone, Debug)]
+pub struct Record {
+    /// The numbers of the agents, rising.
+    pub agents: Vec<usize>,
+    /// The names of the columns in declared order.
+    pub columns: Vec<String>,
+    /// For each agent type (by number), for each column, the variable; none: an empty cell.
+    pub variables: Vec<Vec<Option<VarRef>>>,
+    /// Distance of samples, s; none: every accepted step and both sides of every event.
+    pub every: Option<f64>,
+    /// The file; none: the command line's.
+    pub file: Option<String>,
+    /// Where it stands.
+    pub span: Span,
+}
