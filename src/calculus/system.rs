@@ -1,0 +1,511 @@
+//! The product of this floor: systems of equations as functions over one expression graph, and the structure that
+//! says what each function is for.
+//!
+//! A [`Function`] is a list of nodes to be computed together; code generation turns each into a kernel of the same
+//! number. Everything else here is structure: agent types, modes, conditions, actions, which name functions.
+//!
+//! **Slots.** A function reads agents through the slots of its [`Frame`]: slot 0 is `self` (in an interaction the
+//! first participant, slot 1 the second), then the agents bound by quantifiers, then those reached by links.
+//! **Columns.** An agent is two rows of numbers: its states, and its auxiliary columns ([`Layout`]).
+
+use crate::base::{Arena, Idx, Span};
+use crate::calculus::graph::{Graph, NodeId};
+pub use crate::model::ir::{Block, Instance, Population, Record, Run, VarRef};
+
+/// Names a [`Function`].
+pub type FunctionId = Idx<Function>;
+
+/// A whole program as equations.
+#[derive(Clone, Debug)]
+pub struct System {
+    /// All expressions.
+    pub graph: Graph,
+    /// What is to be compiled.
+    pub functions: Arena<Function>,
+    /// Agent types, numbered as in the model.
+    pub types: Vec<AgentSystem>,
+    /// Interactions, numbered as in the model.
+    pub interactions: Vec<InteractionSystem>,
+    /// The agents at t = 0.
+    pub population: Population,
+    /// Settings of the run.
+    pub run: Run,
+}
+
+/// Values to be computed together.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// For listings: `Car.Follow flow`, `Bump.pair guard 1`.
+    pub name: String,
+    /// What it returns, in order.
+    pub outputs: Vec<NodeId>,
+}
+
+/// The agents that a function can read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// Slot 0 first; a link's slot stands after the slot that it starts from.
+    pub slots: Vec<Slot>,
+}
+
+/// How the agent in a slot is found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Slot {
+    /// `self`, a participant, or an agent bound by a quantifier.
+    Root {
+        /// Its type.
+        ty: usize,
+        /// For listings: `self`, `a`, `o`.
+        name: String,
+    },
+    /// The agent that link number `link` of the agent in slot `from` leads to; it may be absent.
+    Link {
+        /// Where the link starts.
+        from: usize,
+        /// The number of the link in its type.
+        link: usize,
+        /// The type of the agent it leads to.
+        ty: usize,
+        /// For listings: `lead`, `o.lead`.
+        name: String,
+    },
+}
+
+impl Slot {
+    /// The agent type.
+    pub fn ty(&self) -> usize {
+        match self {
+            Slot::Root { ty, .. } | Slot::Link { ty, .. } => *ty,
+        }
+    }
+
+    /// The name for listings.
+    pub fn name(&self) -> &str {
+        match self {
+            Slot::Root { name, .. } | Slot::Link { name, .. } => name,
+        }
+    }
+}
+
+/// The columns of an agent type.
+///
+/// Auxiliary columns in order: number, mode, time of entry, parameters, discretes, links, locks. Numbers of agents are
+/// held as reals, -1 for none. A lock holds the branch that a kink of the flow has taken (rule 15).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Layout {
+    /// How many states.
+    pub n_states: usize,
+    /// How many parameters.
+    pub n_params: usize,
+    /// How many discrete variables.
+    pub n_discretes: usize,
+    /// How many links.
+    pub n_links: usize,
+    /// How many locks (the most that any mode needs).
+    pub n_locks: usize,
+}
+
+impl Layout {
+    /// Column of the agent's own number.
+    pub const NUMBER: usize = 0;
+    /// Column of the number of the (leaf) mode.
+    pub const MODE: usize = 1;
+    /// Column of the time at which the mode was entered, s.
+    pub const ENTRY: usize = 2;
+
+    /// Column of parameter k.
+    pub fn param(&self, k: usize) -> usize {
+        3 + k
+    }
+    /// Column of discrete variable k.
+    pub fn discrete(&self, k: usize) -> usize {
+        3 + self.n_params + k
+    }
+    /// Column of link k.
+    pub fn link(&self, k: usize) -> usize {
+        3 + self.n_params + self.n_discretes + k
+    }
+    /// Column of lock k.
+    pub fn lock(&self, k: usize) -> usize {
+        3 + self.n_params + self.n_discretes + self.n_links + k
+    }
+    /// How many auxiliary columns there are.
+    pub fn n_aux(&self) -> usize {
+        self.lock(self.n_locks)
+    }
+}
+
+/// An agent type.
+#[derive(Clone, Debug)]
+pub struct AgentSystem {
+    /// Its name.
+    pub name: String,
+    /// Its columns.
+    pub layout: Layout,
+    /// Names of the states.
+    pub states: Vec<Column>,
+    /// Names of the parameters.
+    pub params: Vec<Column>,
+    /// Names of the discrete variables.
+    pub discretes: Vec<Column>,
+    /// Names of the links.
+    pub links: Vec<String>,
+    /// Algebraic definitions, for recording.
+    pub lets: Vec<LetSystem>,
+    /// Recordable names in order of declaration.
+    pub declared: Vec<(String, VarRef)>,
+    /// The tree of modes, numbered as in the model; 0 is the root.
+    pub modes: Vec<ModeSystem>,
+    /// Transitions of all modes in order of declaration.
+    pub transitions: Vec<TransitionSystem>,
+}
+
+/// A named column with its unit for output.
+#[derive(Clone, Debug)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// SI value = factor * value in the declared unit.
+    pub factor: f64,
+    /// Whether it holds a boolean.
+    pub boolean: bool,
+}
+
+/// A `let`, computed when it is recorded.
+#[derive(Clone, Debug)]
+pub struct LetSystem {
+    /// Its name and unit.
+    pub column: Column,
+    /// The mode in which it exists; 0: in all.
+    pub mode: usize,
+    /// The agents it reads.
+    pub frame: Frame,
+    /// Its value.
+    pub value: LetValue,
+}
+
+/// What a `let` is.
+#[derive(Clone, Debug)]
+pub enum LetValue {
+    /// A number: a function of one output.
+    Number(FunctionId),
+    /// A condition.
+    Condition(Guard),
+}
+
+/// A node of the tree of modes.
+#[derive(Clone, Debug)]
+pub struct ModeSystem {
+    /// Its name.
+    pub name: String,
+    /// `Drive.Cruise`; empty for the root.
+    pub path: String,
+    /// None for the root.
+    pub parent: Option<usize>,
+    /// 0 for the root.
+    pub depth: usize,
+    /// The leaf that is entered when this mode is (itself, for a leaf).
+    pub initial_leaf: usize,
+    /// The equations of a leaf.
+    pub flow: Option<Flow>,
+    /// Invariants and asserts declared in this mode, without those of enclosing modes.
+    pub claims: Vec<ClaimSystem>,
+    /// Entry actions.
+    pub entry: ActionList,
+    /// Exit actions.
+    pub exit: ActionList,
+    /// The transitions declared in this mode (numbers in `AgentSystem::transitions`).
+    pub transitions: Vec<usize>,
+}
+
+/// The differential equations of a leaf mode.
+#[derive(Clone, Debug)]
+pub struct Flow {
+    /// The agents it reads.
+    pub frame: Frame,
+    /// x' for every state, in order, with kinks locked; reads states, aux, time.
+    pub rates: FunctionId,
+    /// x'' for every state, in order: sum over j of df/dx_j x_j' + df/dt; also reads rates (of self and of foreign slots).
+    pub accelerations: FunctionId,
+    /// The non-zero entries of df/dx.
+    pub jacobian: Vec<JacobianEntry>,
+    /// Their values, in the same order.
+    pub jacobian_values: FunctionId,
+    /// Where a branch of the flow changes.
+    pub kinks: Vec<Kink>,
+    /// Foreign slots whose *states* are read (rule 13): these agents are coupled with self while the mode is active.
+    pub couples: Vec<usize>,
+    /// Where the equation of each state stands.
+    pub spans: Vec<Span>,
+}
+
+/// Place of an entry of the Jacobian: d(rate of `row`)/d(state `column` of the agent in `slot`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct JacobianEntry {
+    /// State of self.
+    pub row: usize,
+    /// Whose state.
+    pub slot: usize,
+    /// Which state.
+    pub column: usize,
+}
+
+/// A surface at which a branch of a flow changes. Its atoms are written over the lock's present value.
+///
+/// `Branch`: lock = 1 while `atom` (the comparison as written) is true, else 0.
+/// `Integer`: lock = floor(e); it falls by one where `below` (e < lock) and rises where `above` (e >= lock + 1) becomes true.
+/// The lock's value for a state given afresh is `initial` (one output: 1/0, or floor(e)).
+#[derive(Clone, Debug)]
+pub struct Kink {
+    /// Which auxiliary column (absolute index) of self holds the branch.
+    pub lock: usize,
+    /// The lock's value computed from the state.
+    pub initial: FunctionId,
+    /// Its surfaces.
+    pub kind: KinkKind,
+    /// Where the operator stands.
+    pub span: Span,
+}
+
+/// The two sorts of kinks.
+#[derive(Clone, Debug)]
+pub enum KinkKind {
+    /// A comparison.
+    Branch(Atom),
+    /// A whole number.
+    Integer {
+        /// e < lock.
+        below: Atom,
+        /// e >= lock + 1.
+        above: Atom,
+    },
+}
+
+/// A condition in negation normal form: monotone in its atoms.
+#[derive(Clone, Debug)]
+pub enum Condition {
+    /// Always or never.
+    Constant(bool),
+    /// A boolean function of auxiliary columns: changes at events only.
+    Discrete(FunctionId),
+    /// A comparison that the flow or time can change; by its number in [`Guard::atoms`].
+    Atom(usize),
+    /// All of them.
+    And(Vec<Condition>),
+    /// At least one of them.
+    Or(Vec<Condition>),
+    /// For at least one agent: binds `slot` to each living agent of type `ty`.
+    Exists(Quantified),
+    /// For all agents.
+    Forall(Quantified),
+    /// `rising(c)`, with its number in the guard.
+    Rising(usize, Box<Condition>),
+}
+
+/// The range and body of a quantifier.
+#[derive(Clone, Debug)]
+pub struct Quantified {
+    /// The slot it binds.
+    pub slot: usize,
+    /// The type it ranges over.
+    pub ty: usize,
+    /// Without self (in an interaction: without both participants).
+    pub other: bool,
+    /// What is to hold (filter included).
+    pub body: Box<Condition>,
+}
+
+/// A comparison of reals, `g <= 0` or `g < 0`.
+#[derive(Clone, Debug)]
+pub struct Atom {
+    /// What it is.
+    pub relation: Relation,
+    /// One output: g; reads states, aux, time.
+    pub value: FunctionId,
+    /// Three outputs: g, dg/dt, d2g/dt2 along given x' and x'' (Gear & Osterby's extra state and its rate);
+    /// reads states, rates, accelerations, aux, time.
+    pub rates: FunctionId,
+    /// The slots that g reads (states or aux), rising.
+    pub slots: Vec<usize>,
+    /// The comparison in the words of the source.
+    pub text: String,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// How an atom compares g with zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Relation {
+    /// g <= 0: true on the boundary.
+    NonPositive,
+    /// g < 0: false on the boundary.
+    Negative,
+    /// `crossing(g)`: true at the instants at which g changes its sign.
+    Crossing,
+}
+
+/// A condition with its atoms.
+#[derive(Clone, Debug)]
+pub struct Guard {
+    /// The tree.
+    pub condition: Condition,
+    /// Its comparisons. An atom below a quantifier has an instance for each binding.
+    pub atoms: Vec<Atom>,
+    /// How many `rising` there are.
+    pub n_rising: usize,
+}
+
+/// An invariant or an assert; the guard is of its *negation*.
+#[derive(Clone, Debug)]
+pub struct ClaimSystem {
+    /// Which.
+    pub kind: ClaimKind,
+    /// The agents it reads.
+    pub frame: Frame,
+    /// True where the claim is false.
+    pub violation: Guard,
+    /// The text given with it.
+    pub message: Option<String>,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The two sorts of claims.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClaimKind {
+    /// Domain of the flow: a violation ends the run.
+    Invariant,
+    /// A claim about the model: a violation is reported.
+    Assert,
+}
+
+/// A transition of an agent type or an interaction.
+#[derive(Clone, Debug)]
+pub struct TransitionSystem {
+    /// As logs call it.
+    pub label: String,
+    /// The mode it belongs to; 0 for interactions.
+    pub source: usize,
+    /// 0 for interactions, 0 for agent-level transitions, then the depth of the mode.
+    pub depth: usize,
+    /// Place in the order of declaration over the whole program.
+    pub declaration: usize,
+    /// One output; none: 0.
+    pub priority: Option<FunctionId>,
+    /// When it fires.
+    pub trigger: Trigger,
+    /// The mode it leads to, as written.
+    pub target: Option<usize>,
+    /// What it does; shares the transition's frame.
+    pub actions: ActionList,
+    /// The agents that guard, priority and actions read.
+    pub frame: Frame,
+    /// Slots of the guard's outermost `exists` binders that actions may read.
+    pub witnesses: Vec<usize>,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// What makes a transition fire.
+#[derive(Clone, Debug)]
+pub enum Trigger {
+    /// The guard alone.
+    When(Guard),
+    /// Age at least `delay` (one output, s, read at entry), and the guard.
+    After {
+        /// s.
+        delay: FunctionId,
+        /// None: true.
+        guard: Option<Guard>,
+    },
+    /// At entry + k period (one output, s, read at entry) if the guard holds then.
+    Every {
+        /// s.
+        period: FunctionId,
+        /// None: true.
+        guard: Option<Guard>,
+    },
+}
+
+/// Actions; all right-hand sides read the state before the list.
+#[derive(Clone, Debug, Default)]
+pub struct ActionList {
+    /// The agents they read (that of the transition, or for entry and exit their own).
+    pub frame: Frame,
+    /// The steps.
+    pub steps: Vec<ActionStep>,
+    /// Every (slot, variable) that some branch writes, sorted, without duplicates.
+    pub writes: Vec<(usize, Target)>,
+}
+
+/// A column that actions write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Target {
+    /// A state.
+    State(usize),
+    /// A discrete variable, by its auxiliary column (absolute index).
+    Aux(usize),
+    /// The mode.
+    Mode,
+}
+
+/// A step of a list of actions.
+#[derive(Clone, Debug)]
+pub enum ActionStep {
+    /// Writes one output.
+    Assign {
+        /// Whose column.
+        slot: usize,
+        /// Which column.
+        target: Target,
+        /// One output.
+        value: FunctionId,
+        /// Where it stands.
+        span: Span,
+    },
+    /// A choice.
+    If {
+        /// The test.
+        condition: Guard,
+        /// If it holds.
+        then: Vec<ActionStep>,
+        /// If not.
+        otherwise: Vec<ActionStep>,
+    },
+    /// The agent in the slot changes mode.
+    Goto {
+        /// Who.
+        slot: usize,
+        /// Into which mode, as written.
+        target: usize,
+        /// Where it stands.
+        span: Span,
+    },
+    /// Ends the run.
+    Stop {
+        /// Why.
+        reason: Option<String>,
+        /// Where it stands.
+        span: Span,
+    },
+}
+
+/// An interaction of two agents.
+#[derive(Clone, Debug)]
+pub struct InteractionSystem {
+    /// Its name.
+    pub name: String,
+    /// The types of slot 0 and slot 1.
+    pub types: [usize; 2],
+    /// Its transitions.
+    pub transitions: Vec<PairTransition>,
+}
+
+/// A transition of an interaction.
+#[derive(Clone, Debug)]
+pub struct PairTransition {
+    /// The transition; slots 0 and 1 are the participants.
+    pub transition: TransitionSystem,
+    /// The same when the two change places (rule 5): one flag per unordered pair, slot 0 the lower number.
+    pub symmetric: bool,
+}

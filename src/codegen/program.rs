@@ -1,0 +1,51 @@
+//! The product of this floor: a program that runs. The structure of the system with a kernel for every function of it.
+
+use crate::base::Arena;
+use crate::calculus::system::{Function, FunctionId};
+pub use crate::calculus::system::{
+    ActionList, ActionStep, AgentSystem, Atom, ClaimKind, ClaimSystem, Column, Condition, Flow, Frame, Guard, InteractionSystem, Kink,
+    KinkKind, Layout, LetSystem, LetValue, ModeSystem, PairTransition, Population, Quantified, Record, Relation, Run, Slot, Target,
+    TransitionSystem, Trigger, VarRef,
+};
+use crate::codegen::kernel::{Kernel, StepKernel};
+
+/// A model, compiled.
+pub struct Program {
+    /// Agent types, numbered as in the model.
+    pub types: Vec<AgentSystem>,
+    /// Interactions, numbered as in the model.
+    pub interactions: Vec<InteractionSystem>,
+    /// The agents at t = 0.
+    pub population: Population,
+    /// Settings of the run.
+    pub run: Run,
+    /// One kernel for each function of the system, same number.
+    pub kernels: Vec<Kernel>,
+    /// Whole Runge-Kutta steps: for each type, for each mode, where the flow reads no foreign state (and is compiled).
+    pub steps: Vec<Vec<Option<StepKernel>>>,
+    /// What compilation took.
+    pub cost: Cost,
+}
+
+/// The size and time of a compilation; the same for any number of agents, but for the time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cost {
+    /// How many functions of machine code.
+    pub functions: usize,
+    /// How many instructions of all tapes.
+    pub instructions: usize,
+    /// Bytes of machine code.
+    pub code_bytes: usize,
+    /// s.
+    pub seconds: f64,
+}
+
+impl Program {
+    /// The kernel of a function.
+    pub fn kernel(&self, function: FunctionId) -> &Kernel {
+        &self.kernels[function.index()]
+    }
+}
+
+/// The functions of a system, for those who compile them.
+pub type Functions = Arena<Function>;
