@@ -3,3 +3,5 @@
 pub mod base;
 pub mod math;
 pub mod syntax;
+pub mod model;
+pub mod calculus;
