@@ -1,0 +1,4 @@
+//! From a program to what happens: events and samples, told to an observer.
+
+pub mod limits;
+pub mod observe;

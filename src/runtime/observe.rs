@@ -1,0 +1,184 @@
+//! What a run tells whoever watches it. An observer changes nothing (rule 16).
+
+use std::io;
+
+use crate::base::{Diagnostic, Span};
+
+/// Told of a run as it proceeds, in the order of time. An `Err` ends the run (the disk is full, say).
+pub trait Observer {
+    /// A transition has fired.
+    fn event(&mut self, event: &Event<'_>) -> io::Result<()>;
+    /// A row of record number `record` of the run's settings.
+    fn sample(&mut self, record: usize, row: &Row<'_>) -> io::Result<()>;
+    /// The state of an agent at the end; agents come in order of their numbers.
+    fn last(&mut self, last: &Last<'_>) -> io::Result<()>;
+    /// Now and then: how far the run has come.
+    fn progress(&mut self, progress: &Progress) -> io::Result<()>;
+}
+
+/// One row of the event log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event<'a> {
+    /// s.
+    pub time: f64,
+    /// Number of the micro-step in its instant, from 0.
+    pub micro: usize,
+    /// `Car.left`, `Bump.pair`.
+    pub transition: &'a str,
+    /// The agent (in an interaction: the first participant, or the one whose mode changes).
+    pub agent: usize,
+    /// The other participant of an interaction.
+    pub other: Option<usize>,
+    /// The mode it leaves and the one it enters, as paths; none where no mode changes.
+    pub modes: Option<(&'a str, &'a str)>,
+}
+
+/// One row of a trajectory.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row<'a> {
+    /// s.
+    pub time: f64,
+    /// Number of micro-steps executed at this instant before the row.
+    pub micro: usize,
+    /// The agent's number.
+    pub agent: usize,
+    /// The path of its mode; empty for an agent without modes.
+    pub mode: &'a str,
+    /// One cell a column of the record.
+    pub cells: &'a [Cell],
+}
+
+/// One value of a trajectory, in the declared unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cell {
+    /// The agent's type has no such variable (or not in this mode).
+    Empty,
+    /// A number.
+    Number(f64),
+    /// True or false.
+    Bool(bool),
+    /// An agent by its number, or `none`.
+    Agent(Option<usize>),
+}
+
+/// The state of an agent at the end of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Last<'a> {
+    /// s.
+    pub time: f64,
+    /// The agent's number.
+    pub agent: usize,
+    /// The number of its type.
+    pub ty: usize,
+    /// The path of its mode.
+    pub mode: &'a str,
+    /// States, in declared units.
+    pub states: &'a [f64],
+    /// Discrete variables, in declared units.
+    pub discretes: &'a [Cell],
+}
+
+/// How far a run has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// The smallest clock, s.
+    pub time: f64,
+    /// The end of the run, s; infinite if none is set.
+    pub until: f64,
+    /// Events so far.
+    pub events: u64,
+    /// Accepted steps so far.
+    pub steps: u64,
+}
+
+/// How a run ended and what it took.
+#[derive(Debug)]
+pub struct Outcome {
+    /// How it ended.
+    pub end: End,
+    /// When it ended, s.
+    pub time: f64,
+    /// Counts.
+    pub stats: Stats,
+    /// Asserts that were false, in the order in which they first were.
+    pub false_asserts: Vec<FalseAssert>,
+    /// Remarks for the user (two interactions on one agent in one instant, ...), each once.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// How a run ended.
+#[derive(Debug)]
+pub enum End {
+    /// At `until`.
+    Until,
+    /// By a `stop` action.
+    Stop {
+        /// The text given with it.
+        reason: Option<String>,
+        /// Which agent.
+        agent: usize,
+        /// The label of the transition or the path of the mode.
+        by: String,
+    },
+    /// The user interrupted it.
+    Interrupted,
+    /// In error.
+    Error(Box<Diagnostic>),
+    /// What watched it failed.
+    Output(io::Error),
+}
+
+/// An assert that was false.
+#[derive(Clone, Debug)]
+pub struct FalseAssert {
+    /// Where it stands.
+    pub span: Span,
+    /// The text given with it.
+    pub message: Option<String>,
+    /// When it was first false, s.
+    pub time: f64,
+    /// For which agent.
+    pub agent: usize,
+    /// How often it became false, over all agents.
+    pub count: u64,
+}
+
+/// Counts of a run. The same for the same model, seed and settings.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stats {
+    /// Rows of the event log.
+    pub events: u64,
+    /// Accepted steps (a coupled group's step counts once for each member).
+    pub steps: u64,
+    /// Rejected steps.
+    pub rejected: u64,
+    /// Evaluations of right-hand sides, one an agent.
+    pub rhs_evaluations: u64,
+    /// Evaluations of guard expressions at a point.
+    pub guard_evaluations: u64,
+    /// Evaluations of guard expressions over an interval.
+    pub guard_ranges: u64,
+    /// Guard instances over pairs (or larger tuples) that exist.
+    pub pairs_listed: u64,
+    /// Roots that could be neither excluded nor isolated.
+    pub undecided_roots: u64,
+    /// Segments that an event cut.
+    pub cuts: u64,
+    /// Per agent type: name, agents, steps, events.
+    pub types: Vec<TypeStats>,
+    /// Per transition: label, firings.
+    pub transitions: Vec<(String, u64)>,
+}
+
+/// Counts of one agent type.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TypeStats {
+    /// The type's name.
+    pub name: String,
+    /// How many agents there are at the end.
+    pub agents: u64,
+    /// Their accepted steps.
+    pub steps: u64,
+    /// Events of their transitions (interactions count for the first participant's type).
+    pub events: u64,
+}
