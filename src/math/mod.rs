@@ -9,3 +9,6 @@ pub mod elementary;
 pub mod op;
 
 pub use op::{Binary, Op, Unary};
+
+#[cfg(test)]
+mod tests;

@@ -1,121 +1,67 @@
-//! Functions taken from the `libm` crate.
+//! The functions taken from `pxfm`, correctly rounded: the only file that names the crate.
 
-/// `tan(x)`.
+/// Tangent.
 #[inline]
 pub fn tan(x: f64) -> f64 {
-    libm::tan(x)
+    pxfm::f_tan(x)
 }
 
-/// `asin(x)`.
+/// Arc sine, NaN beyond ±1.
 #[inline]
 pub fn asin(x: f64) -> f64 {
-    libm::asin(x)
+    pxfm::f_asin(x)
 }
 
-/// `acos(x)`.
+/// Arc cosine, NaN beyond ±1.
 #[inline]
 pub fn acos(x: f64) -> f64 {
-    libm::acos(x)
+    pxfm::f_acos(x)
 }
 
-/// `sinh(x)`.
+/// Hyperbolic sine.
 #[inline]
 pub fn sinh(x: f64) -> f64 {
-    libm::sinh(x)
+    if x == 0.0 { x } else { pxfm::f_sinh(x) } // the crate gives +0 for -0
 }
 
-/// `cosh(x)`.
+/// Hyperbolic cosine.
 #[inline]
 pub fn cosh(x: f64) -> f64 {
-    libm::cosh(x)
+    pxfm::f_cosh(x)
 }
 
-/// `tanh(x)`.
+/// Hyperbolic tangent.
 #[inline]
 pub fn tanh(x: f64) -> f64 {
-    libm::tanh(x)
+    pxfm::f_tanh(x)
 }
 
-/// `asinh(x)`.
+/// Inverse hyperbolic sine.
 #[inline]
 pub fn asinh(x: f64) -> f64 {
-    libm::asinh(x)
+    pxfm::f_asinh(x)
 }
 
-/// `acosh(x)`.
+/// Inverse hyperbolic cosine, NaN below 1.
 #[inline]
 pub fn acosh(x: f64) -> f64 {
-    libm::acosh(x)
+    pxfm::f_acosh(x)
 }
 
-/// `atanh(x)`.
+/// Inverse hyperbolic tangent, infinite at ±1, NaN beyond.
 #[inline]
 pub fn atanh(x: f64) -> f64 {
-    libm::atanh(x)
+    pxfm::f_atanh(x)
 }
 
-/// `log2(x)`.
+/// Logarithm to base 2, -inf at zero, NaN below.
 #[inline]
 pub fn log2(x: f64) -> f64 {
-    libm::log2(x)
+    pxfm::f_log2(x)
 }
 
-/// `log10(x)`.
+/// Logarithm to base 10, -inf at zero, NaN below.
 #[inline]
 pub fn log10(x: f64) -> f64 {
-    libm::log10(x)
-}
-
-/// `cbrt(x)`.
-#[inline]
-pub fn cbrt(x: f64) -> f64 {
-    libm::cbrt(x)
-}
-
-/// `sin(x)`.
-#[inline]
-pub fn sin(x: f64) -> f64 {
-    libm::sin(x)
-}
-
-/// `cos(x)`.
-#[inline]
-pub fn cos(x: f64) -> f64 {
-    libm::cos(x)
-}
-
-/// `atan(x)`.
-#[inline]
-pub fn atan(x: f64) -> f64 {
-    libm::atan(x)
-}
-
-/// `exp(x)`.
-#[inline]
-pub fn exp(x: f64) -> f64 {
-    libm::exp(x)
-}
-
-/// `log(x)`.
-#[inline]
-pub fn log(x: f64) -> f64 {
-    libm::log(x)
-}
-
-/// `hypot` of two arguments.
-#[inline]
-pub fn hypot(a: f64, b: f64) -> f64 {
-    libm::hypot(a, b)
-}
-
-/// `atan2` of two arguments.
-#[inline]
-pub fn atan2(a: f64, b: f64) -> f64 {
-    libm::atan2(a, b)
-}
-
-/// `pow` of two arguments.
-#[inline]
-pub fn pow(a: f64, b: f64) -> f64 {
-    libm::pow(a, b)
+    pxfm::f_log10(x)
 }

@@ -1,0 +1,4 @@
+//! Tests of the arithmetic floor.
+
+mod elementary;
+mod op;
