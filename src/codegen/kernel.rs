@@ -1,5 +1,15 @@
 //! Kernels: what the runtime calls. One safe interface over the interpreter and machine code.
+//!
+//! A kernel computes the outputs of one function of the system from the rows of the agents in its slots and the time.
+//! Every call first compares the lengths of the rows with what the kernel reads ([`Reads`]) and panics if one is too
+//! short: that is what makes the call into machine code sound. Nothing traps: an agent that is absent comes as rows
+//! full of NaN.
 
+use std::cell::RefCell;
+
+use crate::codegen::interpret;
+use crate::codegen::jit::{KernelCode, StepCode};
+use crate::codegen::tape::{Instruction, Row, Tape};
 use crate::math::Interval;
 
 /// The rows of one agent, as a kernel reads them.
@@ -26,4 +36,201 @@ pub struct AgentBox<'a> {
     pub accelerations: &'a [Interval],
     /// Auxiliary columns (they change at events only).
     pub aux: &'a [f64],
+}
+
+/// How long the rows of the agent in a slot must be: the highest column read, plus one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SlotReads {
+    /// States.
+    pub states: usize,
+    /// Their rates.
+    pub rates: usize,
+    /// Their second rates.
+    pub accelerations: usize,
+    /// Auxiliary columns.
+    pub aux: usize,
+}
+
+/// What a kernel reads.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Reads {
+    /// For each slot up to the last one that is read.
+    pub slots: Vec<SlotReads>,
+    /// Whether it reads the time.
+    pub time: bool,
+}
+
+impl Reads {
+    /// What a tape reads.
+    fn of(tape: &Tape) -> Self {
+        let mut reads = Self::default();
+        for instruction in &tape.instructions {
+            match *instruction {
+                Instruction::Time { .. } => reads.time = true,
+                Instruction::Load { slot, row, column, .. } => {
+                    reads.include(slot as usize, row, column as usize + 1)
+                }
+                Instruction::Apply { .. } => {}
+            }
+        }
+        reads
+    }
+
+    fn include(&mut self, slot: usize, row: Row, length: usize) {
+        if self.slots.len() <= slot {
+            self.slots.resize(slot + 1, SlotReads::default());
+        }
+        let slot = &mut self.slots[slot];
+        let width = match row {
+            Row::States => &mut slot.states,
+            Row::Rates => &mut slot.rates,
+            Row::Accelerations => &mut slot.accelerations,
+            Row::Aux => &mut slot.aux,
+        };
+        *width = length.max(*width);
+    }
+
+    /// Whether these agents have all columns that are read.
+    #[inline]
+    pub(super) fn fit(&self, slots: &[AgentView<'_>]) -> bool {
+        slots.len() >= self.slots.len()
+            && self.slots.iter().zip(slots).all(|(reads, agent)| {
+                (agent.states.len() >= reads.states)
+                    & (agent.rates.len() >= reads.rates)
+                    & (agent.accelerations.len() >= reads.accelerations)
+                    & (agent.aux.len() >= reads.aux)
+            })
+    }
+}
+
+/// A function of a system that can be called.
+#[derive(Debug)]
+pub struct Kernel {
+    tape: Tape,
+    reads: Reads,
+    code: Option<KernelCode>,
+}
+
+impl Kernel {
+    /// A kernel of a tape, with its machine code where there is some.
+    pub(super) fn new(tape: Tape, code: Option<KernelCode>) -> Self {
+        Self { reads: Reads::of(&tape), tape, code }
+    }
+
+    /// Computes the outputs, the same bits on every back end. `out` must hold at least as many as there are.
+    #[inline]
+    pub fn eval(&self, slots: &[AgentView<'_>], time: f64, out: &mut [f64]) {
+        assert!(self.reads.fit(slots), "a row is shorter than the kernel's reads");
+        assert!(out.len() >= self.tape.outputs.len(), "no room for the kernel's outputs");
+        match &self.code {
+            // SAFETY: the rows are as long as the code reads and `out` is as long as it writes, both just asserted.
+            Some(code) => unsafe { code.call(self.reads.slots.len(), slots, time, out) },
+            None => interpret_numbers(&self.tape, slots, time, out),
+        }
+    }
+
+    /// Bounds the outputs: each contains what `eval` gives for every member of the boxes at every time in `time`.
+    ///
+    /// `registers` is scratch space, reused from call to call.
+    pub fn range(
+        &self,
+        slots: &[AgentBox<'_>],
+        time: Interval,
+        registers: &mut Vec<Interval>,
+        out: &mut [Interval],
+    ) {
+        assert!(out.len() >= self.tape.outputs.len(), "no room for the kernel's outputs");
+        if registers.len() < self.tape.n_registers {
+            registers.resize(self.tape.n_registers, time);
+        }
+        interpret::run(&self.tape, slots, time, registers, out);
+    }
+
+    /// How many outputs there are.
+    pub fn n_outputs(&self) -> usize {
+        self.tape.outputs.len()
+    }
+
+    /// What it reads.
+    pub fn reads(&self) -> &Reads {
+        &self.reads
+    }
+
+    /// Whether it runs as machine code.
+    pub fn is_compiled(&self) -> bool {
+        self.code.is_some()
+    }
+}
+
+/// Registers that fit on the stack; more are kept per thread.
+const N_STACK_REGISTERS: usize = 32;
+
+thread_local! {
+    static REGISTERS: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Runs a tape on numbers without allocating (but for the first long tape of a thread).
+fn interpret_numbers(tape: &Tape, slots: &[AgentView<'_>], time: f64, out: &mut [f64]) {
+    if tape.n_registers <= N_STACK_REGISTERS {
+        interpret::run(tape, slots, time, &mut [0.0; N_STACK_REGISTERS], out);
+        return;
+    }
+    REGISTERS.with_borrow_mut(|registers| {
+        if registers.len() < tape.n_registers {
+            registers.resize(tape.n_registers, 0.0);
+        }
+        interpret::run(tape, slots, time, registers, out);
+    });
+}
+
+/// A whole step of the explicit Runge-Kutta pair [`TSIT5`](crate::math::runge_kutta::TSIT5) in one function.
+#[derive(Debug)]
+pub struct StepKernel {
+    n: usize,
+    reads: Reads,
+    code: StepCode,
+}
+
+impl StepKernel {
+    /// A step of the flow whose rates `tape` computes.
+    pub(super) fn new(tape: &Tape, code: StepCode) -> Self {
+        let n = tape.outputs.len();
+        let mut reads = Reads::of(tape);
+        if n > 0 {
+            reads.include(0, Row::States, n);
+        }
+        Self { n, reads, code }
+    }
+
+    /// A step from `time`, s, of length `h`, s, in the order of operations that
+    /// [`runge_kutta`](crate::math::runge_kutta) lays down.
+    ///
+    /// Slot 0 holds the n states at `time`; of the other slots only auxiliary columns are read. `k` holds 7 n rates,
+    /// stage by stage: the first n, at the start, are given, the others are written. `x_new` and `err` receive n each.
+    #[inline]
+    pub fn step(
+        &self,
+        slots: &[AgentView<'_>],
+        time: f64,
+        h: f64,
+        k: &mut [f64],
+        x_new: &mut [f64],
+        err: &mut [f64],
+    ) {
+        assert!(self.reads.fit(slots), "a row is shorter than the kernel's reads");
+        let room = k.len() >= 7 * self.n && x_new.len() >= self.n && err.len() >= self.n;
+        assert!(room, "no room for the step");
+        // SAFETY: all lengths that the code relies on were just asserted.
+        unsafe { self.code.call(self.reads.slots.len(), slots, time, h, k, x_new, err) };
+    }
+
+    /// How many states there are.
+    pub fn n_states(&self) -> usize {
+        self.n
+    }
+
+    /// What it reads.
+    pub fn reads(&self) -> &Reads {
+        &self.reads
+    }
 }

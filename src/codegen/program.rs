@@ -1,15 +1,15 @@
 //! The product of this floor: a program that runs. The structure of the system with a kernel for every function of it.
 
-use crate::base::Arena;
-use crate::calculus::system::{Function, FunctionId};
+use crate::calculus::system::FunctionId;
 pub use crate::calculus::system::{
-    ActionList, ActionStep, AgentSystem, Atom, ClaimKind, ClaimSystem, Column, Condition, Flow, Frame, Guard, InteractionSystem, Kink,
-    KinkKind, Layout, LetSystem, LetValue, ModeSystem, PairTransition, Population, Quantified, Record, Relation, Run, Slot, Target,
-    TransitionSystem, Trigger, VarRef,
+    ActionList, ActionStep, AgentSystem, Atom, ClaimKind, ClaimSystem, Column, Condition, Flow, Frame, Guard,
+    InteractionSystem, Kink, KinkKind, Layout, LetSystem, LetValue, ModeSystem, PairTransition, Population,
+    Quantified, Record, Relation, Run, Slot, Target, TransitionSystem, Trigger, VarRef,
 };
 use crate::codegen::kernel::{Kernel, StepKernel};
 
 /// A model, compiled.
+#[derive(Debug)]
 pub struct Program {
     /// Agent types, numbered as in the model.
     pub types: Vec<AgentSystem>,
@@ -32,6 +32,8 @@ pub struct Program {
 pub struct Cost {
     /// How many functions of machine code.
     pub functions: usize,
+    /// How many functions are interpreted: all of them, or those too long to be compiled.
+    pub interpreted: usize,
     /// How many instructions of all tapes.
     pub instructions: usize,
     /// Bytes of machine code.
@@ -46,6 +48,3 @@ impl Program {
         &self.kernels[function.index()]
     }
 }
-
-/// The functions of a system, for those who compile them.
-pub type Functions = Arena<Function>;

@@ -7,6 +7,7 @@
 
 pub mod elementary;
 pub mod op;
+pub mod runge_kutta;
 
 pub use op::{Binary, Op, Unary};
 
