@@ -5,3 +5,5 @@ pub mod math;
 pub mod syntax;
 pub mod model;
 pub mod calculus;
+pub mod runtime;
+pub mod output;

@@ -458,7 +458,15 @@ pub struct Run {
 
 impl Default for Run {
     fn default() -> Self {
-        Self { until: None, tolerance: 1e-6, absolute: None, seed: 0, records: Vec::new(), events: None, span: None }
+        Self {
+            until: None,
+            tolerance: 1e-6,
+            absolute: None,
+            seed: 0,
+            records: Vec::new(),
+            events: None,
+            span: None,
+        }
     }
 }
 

@@ -1,0 +1,73 @@
+//! The state of every agent at the end: a row for each, in the order of their numbers.
+
+use std::io;
+
+use super::cast::{Cast, TypeColumns};
+use super::table::{Sink, Table};
+use super::trajectory::write_cell;
+use crate::runtime::observe::{Cell, Last};
+
+/// `time,agent,mode,` and a column for each name that any agent type has among its states and discrete variables.
+pub(super) struct FinalStates {
+    table: Table,
+    /// For each agent type, for each column, where the value lies.
+    places: Vec<Vec<Place>>,
+}
+
+/// Where the value of a column lies in an agent of one type.
+#[derive(Clone, Copy)]
+enum Place {
+    State(usize),
+    Discrete(usize),
+    Nowhere,
+}
+
+impl FinalStates {
+    pub(super) fn new(sink: Sink, cast: &Cast) -> io::Result<Self> {
+        let columns = columns_of(cast);
+        let header = ["time", "agent", "mode"].into_iter().chain(columns.iter().copied());
+        let table = Table::new(sink, header)?;
+        let places =
+            cast.types.iter().map(|ty| columns.iter().map(|column| place_of(ty, column)).collect()).collect();
+        Ok(Self { table, places })
+    }
+
+    pub(super) fn last(&mut self, cast: &Cast, last: &Last<'_>) -> io::Result<()> {
+        self.table.number(last.time)?;
+        self.table.text(&cast.agent(last.agent))?;
+        self.table.text(last.mode)?;
+        for &place in &self.places[last.ty] {
+            let cell = match place {
+                Place::State(k) => Cell::Number(last.states[k]),
+                Place::Discrete(k) => last.discretes[k],
+                Place::Nowhere => Cell::Empty,
+            };
+            write_cell(&mut self.table, cast, cell)?;
+        }
+        self.table.end_row()
+    }
+
+    pub(super) fn flush(&mut self) -> io::Result<()> {
+        self.table.flush()
+    }
+}
+
+/// Every name once: type by type, states before discrete variables.
+fn columns_of(cast: &Cast) -> Vec<&str> {
+    let mut columns: Vec<&str> = Vec::new();
+    for name in cast.types.iter().flat_map(|ty| ty.states.iter().chain(&ty.discretes)) {
+        if !columns.contains(&name.as_str()) {
+            columns.push(name);
+        }
+    }
+    columns
+}
+
+fn place_of(ty: &TypeColumns, column: &str) -> Place {
+    let position = |names: &[String]| names.iter().position(|name| name == column);
+    match (position(&ty.states), position(&ty.discretes)) {
+        (Some(k), _) => Place::State(k),
+        (None, Some(k)) => Place::Discrete(k),
+        (None, None) => Place::Nowhere,
+    }
+}

@@ -1,0 +1,84 @@
+//! The statistics of a run as JSON. Keys are stable; only `compile_seconds` and `run_seconds` differ from run to run.
+
+use serde_json::{Map, Value, json};
+
+use super::report::Report;
+use crate::runtime::observe::{End, FalseAssert};
+
+/// The statistics, one object over several lines with a line end. `until` is null where only a `stop` ends the run.
+pub fn statistics(report: &Report<'_>) -> String {
+    let outcome = report.outcome;
+    let stats = &outcome.stats;
+    let value = json!({
+        "model": report.model,
+        "algorithm": report.algorithm,
+        "engine": report.engine,
+        "integrator": report.integrator,
+        "backend": report.backend,
+        "threads": report.threads,
+        "tolerance": report.tolerance,
+        "absolute": report.absolute,
+        "seed": report.seed,
+        "until": report.until,
+        "end": end(&outcome.end, report),
+        "end_time": outcome.time,
+        "agents": report.cast.agents.len(),
+        "events": stats.events,
+        "steps": stats.steps,
+        "rejected": stats.rejected,
+        "rhs_evaluations": stats.rhs_evaluations,
+        "guard_evaluations": stats.guard_evaluations,
+        "guard_ranges": stats.guard_ranges,
+        "pairs_listed": stats.pairs_listed,
+        "undecided_roots": stats.undecided_roots,
+        "cuts": stats.cuts,
+        "false_asserts": outcome.false_asserts.iter().map(|claim| false_assert(claim, report)).collect::<Vec<_>>(),
+        "types": types(report),
+        "transitions": transitions(report),
+        "functions": report.functions,
+        "instructions": report.instructions,
+        "code_bytes": report.code_bytes,
+        "compile_seconds": report.compile_seconds,
+        "run_seconds": report.run_seconds,
+        "version": env!("CARGO_PKG_VERSION"),
+    });
+    let mut text = serde_json::to_string_pretty(&value).expect("every key is a string");
+    text.push('\n');
+    text
+}
+
+fn end(end: &End, report: &Report<'_>) -> Value {
+    match end {
+        End::Until => json!({ "kind": "until" }),
+        End::Stop { reason, agent, by } => {
+            json!({ "kind": "stop", "reason": reason, "agent": report.cast.agent(*agent), "by": by })
+        }
+        End::Interrupted => json!({ "kind": "interrupted" }),
+        End::Error(diagnostic) => {
+            json!({ "kind": "error", "code": diagnostic.code, "message": diagnostic.title })
+        }
+        End::Output(error) => json!({ "kind": "output", "message": error.to_string() }),
+    }
+}
+
+fn false_assert(claim: &FalseAssert, report: &Report<'_>) -> Value {
+    json!({
+        "message": claim.message,
+        "time": claim.time,
+        "agent": report.cast.agent(claim.agent),
+        "count": claim.count,
+    })
+}
+
+fn types(report: &Report<'_>) -> Value {
+    let of_type = report.outcome.stats.types.iter().map(|ty| {
+        let counts = json!({ "agents": ty.agents, "steps": ty.steps, "events": ty.events });
+        (ty.name.clone(), counts)
+    });
+    Value::Object(of_type.collect::<Map<_, _>>())
+}
+
+fn transitions(report: &Report<'_>) -> Value {
+    let firings = report.outcome.stats.transitions.iter().map(|(label, count)| (label.clone(), json!(count)));
+    Value::Object(firings.collect::<Map<_, _>>())
+}

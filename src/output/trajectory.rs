@@ -1,0 +1,47 @@
+//! A trajectory: the recorded variables of some agents over time.
+
+use std::io;
+
+use super::cast::Cast;
+use super::table::{Sink, Table};
+use crate::runtime::observe::{Cell, Row};
+
+/// `time,micro,agent,mode,` and a column for each recorded variable.
+pub(super) struct Trajectory {
+    table: Table,
+}
+
+impl Trajectory {
+    pub(super) fn new(sink: Sink, columns: &[String]) -> io::Result<Self> {
+        let fixed = ["time", "micro", "agent", "mode"];
+        let header = fixed.into_iter().chain(columns.iter().map(String::as_str));
+        Ok(Self { table: Table::new(sink, header)? })
+    }
+
+    pub(super) fn sample(&mut self, cast: &Cast, row: &Row<'_>) -> io::Result<()> {
+        self.table.number(row.time)?;
+        self.table.count(row.micro)?;
+        self.table.text(&cast.agent(row.agent))?;
+        self.table.text(row.mode)?;
+        for &cell in row.cells {
+            write_cell(&mut self.table, cast, cell)?;
+        }
+        self.table.end_row()
+    }
+
+    pub(super) fn flush(&mut self) -> io::Result<()> {
+        self.table.flush()
+    }
+}
+
+/// One value: nothing, a number, `true` or `false`, the path of an agent or `none`.
+pub(super) fn write_cell(table: &mut Table, cast: &Cast, cell: Cell) -> io::Result<()> {
+    match cell {
+        Cell::Empty => table.text(""),
+        Cell::Number(value) => table.number(value),
+        Cell::Bool(true) => table.text("true"),
+        Cell::Bool(false) => table.text("false"),
+        Cell::Agent(Some(agent)) => table.text(&cast.agent(agent)),
+        Cell::Agent(None) => table.text("none"),
+    }
+}
