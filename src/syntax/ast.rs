@@ -1,6 +1,6 @@
 //! The syntax tree: what a `.hy` file says, item by item, each node with its place in the text.
 //!
-//! Pure data, without a method that decides anything: no name is resolved, no type known, no unit read. Parentheses
+//! Pure data; its methods only name operators: no name is resolved, no type known, no unit read. Parentheses
 //! and comments are gone. Chains of operators of one precedence (`a + b - c`, `p and q and r`) are flat lists, however
 //! long; everything else nests at most as deep as [`MAX_NESTING`](super::MAX_NESTING) allows.
 
@@ -803,4 +803,53 @@ pub enum QuantifierKind {
     Max,
     /// The agent with the least value of the body.
     Nearest,
+}
+
+impl SumOp {
+    /// As it is written.
+    pub fn sign(self) -> &'static str {
+        match self {
+            SumOp::Add => "+",
+            SumOp::Sub => "-",
+        }
+    }
+}
+
+impl ProductOp {
+    /// As it is written.
+    pub fn sign(self) -> &'static str {
+        match self {
+            ProductOp::Mul => "*",
+            ProductOp::Div => "/",
+        }
+    }
+}
+
+impl CompareOp {
+    /// As it is written.
+    pub fn sign(self) -> &'static str {
+        match self {
+            CompareOp::Less => "<",
+            CompareOp::LessEqual => "<=",
+            CompareOp::Greater => ">",
+            CompareOp::GreaterEqual => ">=",
+            CompareOp::Equal => "==",
+            CompareOp::NotEqual => "!=",
+        }
+    }
+}
+
+impl QuantifierKind {
+    /// As it is written.
+    pub fn word(self) -> &'static str {
+        match self {
+            QuantifierKind::Exists => "exists",
+            QuantifierKind::Forall => "forall",
+            QuantifierKind::Count => "count",
+            QuantifierKind::Sum => "sum",
+            QuantifierKind::Min => "min",
+            QuantifierKind::Max => "max",
+            QuantifierKind::Nearest => "nearest",
+        }
+    }
 }

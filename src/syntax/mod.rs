@@ -2,29 +2,67 @@
 //!
 //! In: one file's text. Out: an [`Ast`], or diagnostics (`HY01xx`). Promised: no input makes it panic, overflow a
 //! stack or take more than linear time; a tree that comes out has expressions that nest no deeper than
-//! [`MAX_NESTING`] brackets and prefixes. It does not know what a name, a type, a unit or a number means.
+//! [`MAX_HEIGHT`] nodes. It does not know what a name, a type, a unit or a number means.
 
 pub mod ast;
+pub mod error;
+mod scan;
+mod nesting;
+mod grammar;
+mod words;
+mod expected;
+mod build;
+mod dump;
+mod print;
 
 pub use ast::Ast;
 
-use crate::base::{Diagnostic, FileId};
+use crate::base::{Diagnostic, FileId, Span};
+use error::SyntaxError;
 
-/// How deep brackets, `if`s, quantifiers, `^` and prefix operators may nest together.
+/// How deep brackets, `if`s, quantifiers, `^` and prefix operators may nest together in a text.
 pub const MAX_NESTING: usize = 256;
 
+/// How many nodes may lie on a way from the root of an expression to a leaf. Parentheses are no nodes; a chain
+/// `a + b + c` is one node however long it is.
+pub const MAX_HEIGHT: usize = 1024;
+
+/// The size of the largest file, in bytes.
+pub const MAX_FILE_BYTES: usize = 64 << 20;
+
+/// The stack on which this floor recurses: several times what the deepest text needs in a build without optimisation.
+const STACK_BYTES: usize = 256 << 20;
+
 /// The syntax tree of a text, or what is wrong with the text.
-pub fn parse(file: FileId, _text: &str) -> Result<Ast, Vec<Diagnostic>> {
-    let _ = file;
-    Ok(Ast { items: Vec::new() })
+pub fn parse(file: FileId, text: &str) -> Result<Ast, Vec<Diagnostic>> {
+    on_large_stack(|| read(file, text)).map_err(|errors| errors.iter().map(SyntaxError::diagnostic).collect())
+}
+
+fn read(file: FileId, text: &str) -> Result<Ast, Vec<SyntaxError>> {
+    if text.len() > MAX_FILE_BYTES {
+        return Err(vec![SyntaxError::FileTooLarge { span: Span::new(file, 0, 0), limit: MAX_FILE_BYTES }]);
+    }
+    let tokens = scan::scan(file, text).map_err(|error| vec![error])?;
+    nesting::check_nesting(file, text, &tokens, MAX_NESTING).map_err(|error| vec![error])?;
+    let piece = grammar::read(text).map_err(|error| vec![expected::explain(file, text, &tokens, &error)])?;
+    build::build(file, text, &tokens, piece)
 }
 
 /// The tree as a text in the canonical layout; parsing it gives the same tree, at other places.
-pub fn print(_ast: &Ast) -> String {
-    String::new()
+pub fn print(ast: &Ast) -> String {
+    on_large_stack(|| print::print(ast))
 }
 
 /// The tree as an indented outline without places, for `hyc show --stage ast`.
-pub fn dump(_ast: &Ast) -> String {
-    String::new()
+pub fn dump(ast: &Ast) -> String {
+    on_large_stack(|| dump::dump(ast))
+}
+
+/// Does the work on a thread whose stack suffices for everything within this floor's limits.
+fn on_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().name("syntax".to_string()).stack_size(STACK_BYTES);
+        let handle = thread.spawn_scoped(scope, work).expect("the system grants another thread");
+        handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
 }

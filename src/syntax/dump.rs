@@ -1,0 +1,314 @@
+//! Writes a tree as an indented outline, one node a line: what `hyc show --stage ast` prints.
+//!
+//! Every fact of the tree is in it except the places, so two texts mean the same tree if and only if their outlines are
+//! equal.
+
+mod expr;
+
+use super::ast::*;
+
+/// The outline of a tree.
+pub fn dump(ast: &Ast) -> String {
+    let mut outline = Outline { text: String::new(), depth: 0 };
+    for item in &ast.items {
+        outline.item(item);
+    }
+    outline.text
+}
+
+/// The text so far, and how far the next line is indented.
+struct Outline {
+    text: String,
+    depth: usize,
+}
+
+impl Outline {
+    fn line(&mut self, line: &str) {
+        self.text.extend(std::iter::repeat_n("  ", self.depth));
+        self.text.push_str(line);
+        self.text.push('\n');
+    }
+
+    /// A line and, indented below it, what `inside` writes.
+    fn node(&mut self, line: &str, inside: impl FnOnce(&mut Self)) {
+        self.line(line);
+        self.depth += 1;
+        inside(self);
+        self.depth -= 1;
+    }
+
+    fn item(&mut self, item: &Item) {
+        match item {
+            Item::Import(import) => self.line(&format!("import {:?}", import.path.value)),
+            Item::Param(param) => {
+                let head = format!("param {}{}", param.name.text, annotation(&param.ty));
+                self.node(&head, |o| o.expr(&param.value));
+            }
+            Item::Let(definition) => self.definition(definition),
+            Item::Fn(function) => {
+                self.node(&format!("fn {}{}", function.name.text, annotation(&function.ty)), |o| {
+                    o.formals(&function.formals);
+                    o.expr(&function.body);
+                })
+            }
+            Item::Agent(agent) => self.node(&format!("agent {}", agent.name.text), |o| {
+                o.formals(&agent.formals);
+                agent.items.iter().for_each(|item| o.agent_item(item));
+            }),
+            Item::Interaction(interaction) => {
+                self.node(&format!("interaction {}", interaction.name.text), |o| {
+                    o.formals(&interaction.formals);
+                    interaction.items.iter().for_each(|item| o.interaction_item(item));
+                })
+            }
+            Item::System(system) => self.node("system", |o| {
+                for instance in &system.instances {
+                    o.node(&format!("instance {}", instance.name.text), |o| {
+                        o.constructor(&instance.constructor)
+                    });
+                }
+            }),
+            Item::Property(property) => {
+                self.node(&format!("property {}", property.name.text), |o| o.formula(&property.formula));
+            }
+            Item::Run(run) => {
+                self.node("run", |o| run.settings.iter().for_each(|setting| o.setting(setting)))
+            }
+        }
+    }
+
+    fn definition(&mut self, definition: &Let) {
+        let head = format!("let {}{}", definition.name.text, annotation(&definition.ty));
+        self.node(&head, |o| o.expr(&definition.value));
+    }
+
+    fn formals(&mut self, formals: &[Formal]) {
+        for formal in formals {
+            let head = format!("formal {}: {}", formal.name.text, type_name(&formal.ty));
+            self.node(&head, |o| formal.default.iter().for_each(|default| o.expr(default)));
+        }
+    }
+
+    fn agent_item(&mut self, item: &AgentItem) {
+        match item {
+            AgentItem::Variables(variables) => {
+                let kind = match variables.kind {
+                    VariableKind::State => "state",
+                    VariableKind::Discrete => "discrete",
+                };
+                self.node(kind, |o| variables.variables.iter().for_each(|variable| o.variable(variable)));
+            }
+            AgentItem::Link(link) => {
+                let target =
+                    link.target.iter().map(|target| format!(": {}", target.text)).collect::<String>();
+                self.node(&format!("link {}{target}", link.name.text), |o| o.optional(&link.value));
+            }
+            AgentItem::Event(event) => {
+                self.node(&format!("event {}", event.name.text), |o| o.formals(&event.formals))
+            }
+            AgentItem::Region(region) => {
+                self.node(&format!("region {}", region.name.text), |o| o.body(&region.items))
+            }
+            AgentItem::Body(item) => self.body_item(item),
+        }
+    }
+
+    fn variable(&mut self, variable: &Variable) {
+        let head = format!("variable {}{}", variable.name.text, annotation(&variable.ty));
+        self.node(&head, |o| variable.initial.iter().for_each(|given| o.given(given)));
+    }
+
+    fn given(&mut self, given: &Given) {
+        let sign = match given.kind {
+            GivenKind::Value => "=",
+            GivenKind::Draw => "~",
+        };
+        self.node(sign, |o| o.expr(&given.value));
+    }
+
+    fn body(&mut self, items: &[BodyItem]) {
+        items.iter().for_each(|item| self.body_item(item));
+    }
+
+    fn body_item(&mut self, item: &BodyItem) {
+        match item {
+            BodyItem::Let(definition) => self.definition(definition),
+            BodyItem::Flow(flow) => self.node("flow", |o| {
+                for equation in &flow.equations {
+                    o.node(&format!("{}' =", equation.state.text), |o| o.expr(&equation.rate));
+                }
+            }),
+            BodyItem::Invariant(claim) => self.claim("invariant", claim),
+            BodyItem::Assert(claim) => self.claim("assert", claim),
+            BodyItem::Mode(mode) => {
+                let initial = if mode.initial.is_some() { "initial " } else { "" };
+                self.node(&format!("{initial}mode {}", mode.name.text), |o| o.body(&mode.items));
+            }
+            BodyItem::Entry(actions) => self.actions("entry", actions),
+            BodyItem::Exit(actions) => self.actions("exit", actions),
+            BodyItem::Transition(transition) => self.transition(transition),
+        }
+    }
+
+    fn claim(&mut self, word: &str, claim: &Claim) {
+        self.node(&format!("{word}{}", text_after(&claim.message)), |o| o.expr(&claim.condition));
+    }
+
+    fn transition(&mut self, transition: &Transition) {
+        let label = transition.label.iter().map(|label| format!(" {}", label.text)).collect::<String>();
+        let target = transition.target.iter().map(|to| format!(" -> {}", target(to))).collect::<String>();
+        self.node(&format!("transition{label}{target}"), |o| {
+            o.trigger(&transition.trigger);
+            o.labelled("priority", &transition.priority);
+            transition.actions.iter().for_each(|actions| o.actions("actions", actions));
+        });
+    }
+
+    fn trigger(&mut self, trigger: &Trigger) {
+        match &trigger.kind {
+            TriggerKind::When => {}
+            TriggerKind::After(delay) => self.node("after", |o| o.expr(delay)),
+            TriggerKind::Every(period) => self.node("every", |o| o.expr(period)),
+            TriggerKind::Rate(hazard) => self.node("rate", |o| o.expr(hazard)),
+            TriggerKind::On { event, binders, sender } => {
+                let binders = binders.iter().map(|binder| format!(" {}", binder.text)).collect::<String>();
+                self.node(&format!("on {}", event.text), |o| {
+                    if !binders.is_empty() {
+                        o.line(&format!("binders{binders}"));
+                    }
+                    o.labelled("from", sender);
+                });
+            }
+        }
+        self.labelled("when", &trigger.guard);
+    }
+
+    fn actions(&mut self, word: &str, actions: &Actions) {
+        self.node(word, |o| actions.actions.iter().for_each(|action| o.action(action)));
+    }
+
+    fn action(&mut self, action: &Action) {
+        match &action.kind {
+            ActionKind::Assign { place, given } => {
+                let owner = place.owner.iter().map(|owner| format!("{}.", owner.text)).collect::<String>();
+                self.node(&format!("assign {owner}{}", place.variable.text), |o| o.given(given));
+            }
+            ActionKind::Create(constructor) => self.node("create", |o| o.constructor(constructor)),
+            ActionKind::Destroy(agent) => self.node("destroy", |o| o.expr(agent)),
+            ActionKind::Emit { event, args, delay } => self.node(&format!("emit {}", event.text), |o| {
+                args.iter().for_each(|arg| o.expr(arg));
+                o.labelled("after", delay);
+            }),
+            ActionKind::ChangeMode { participant, target: to } => {
+                self.line(&format!("{} -> {}", participant.text, target(to)));
+            }
+            ActionKind::Stop(reason) => self.line(&format!("stop{}", text_after(reason))),
+            ActionKind::If { branches, otherwise } => {
+                for branch in branches {
+                    self.node("if", |o| o.expr(&branch.condition));
+                    self.actions("then", &branch.actions);
+                }
+                otherwise.iter().for_each(|actions| self.actions("else", actions));
+            }
+        }
+    }
+
+    fn interaction_item(&mut self, item: &InteractionItem) {
+        match item {
+            InteractionItem::Let(definition) => self.definition(definition),
+            InteractionItem::Transition(transition) => self.transition(transition),
+        }
+    }
+
+    fn constructor(&mut self, constructor: &Constructor) {
+        let start = constructor.start.iter().map(|mode| format!(" in {}", target(mode))).collect::<String>();
+        self.node(&format!("new {}{start}", constructor.agent.text), |o| {
+            match &constructor.count {
+                None => {}
+                Some(Count::Exactly(count)) => o.node("count", |o| o.expr(count)),
+                Some(Count::AllRows(_)) => o.line("count of rows"),
+            }
+            for arg in &constructor.args {
+                o.node(&format!("argument {}", arg.name.text), |o| o.given(&arg.given));
+            }
+            o.labelled("from", &constructor.source);
+        });
+    }
+
+    fn formula(&mut self, formula: &Formula) {
+        match &formula.kind {
+            FormulaKind::Always(window, inner) => self.node("always", |o| {
+                o.window(window);
+                o.formula(inner);
+            }),
+            FormulaKind::Eventually(window, inner) => self.node("eventually", |o| {
+                o.window(window);
+                o.formula(inner);
+            }),
+            FormulaKind::Until { before, window, goal } => self.node("until", |o| {
+                o.window(window);
+                o.expr(before);
+                o.expr(goal);
+            }),
+            FormulaKind::Holds(condition) => self.expr(condition),
+        }
+    }
+
+    fn window(&mut self, window: &Option<Window>) {
+        if let Some(window) = window {
+            self.node("window", |o| {
+                o.expr(&window.from);
+                o.expr(&window.to);
+            });
+        }
+    }
+
+    fn setting(&mut self, setting: &RunSetting) {
+        match &setting.kind {
+            RunSettingKind::Until(end) => self.node("until", |o| o.expr(end)),
+            RunSettingKind::StopWhen(condition) => self.node("stop when", |o| o.expr(condition)),
+            RunSettingKind::Record { columns, period, file } => {
+                self.node(&format!("record to {:?}", file.value), |o| {
+                    columns.iter().for_each(|column| o.expr(column));
+                    o.labelled("every", period);
+                })
+            }
+            RunSettingKind::Output { name, file } => self.line(&format!("{} to {:?}", name.text, file.value)),
+            RunSettingKind::Set { name, value } => {
+                self.node(&format!("set {}", name.text), |o| o.expr(value))
+            }
+        }
+    }
+
+    fn optional(&mut self, expr: &Option<Expr>) {
+        expr.iter().for_each(|expr| self.expr(expr));
+    }
+
+    fn labelled(&mut self, word: &str, expr: &Option<Expr>) {
+        if let Some(expr) = expr {
+            self.node(word, |o| o.expr(expr));
+        }
+    }
+}
+
+fn text_after(text: &Option<Text>) -> String {
+    text.iter().map(|text| format!(" {:?}", text.value)).collect()
+}
+
+fn annotation(ty: &Option<TypeName>) -> String {
+    ty.iter().map(|ty| format!(": {}", type_name(ty))).collect()
+}
+
+fn type_name(ty: &TypeName) -> String {
+    format!("{}{}", ty.name.text, unit_after(&ty.unit))
+}
+
+fn unit_after(unit: &Option<UnitText>) -> String {
+    unit.iter().map(|unit| format!(" [{}]", unit.text)).collect()
+}
+
+fn target(target: &Target) -> String {
+    let history = if target.history.is_some() { ".history" } else { "" };
+    let path: Vec<&str> = target.path.iter().map(|name| name.text.as_str()).collect();
+    format!("{}{history}", path.join("."))
+}

@@ -1,0 +1,283 @@
+//! Turns the place where the grammar gave up into an error that a person can act on.
+//!
+//! In: pest's error (a position and the rules that would have fitted there), the tokens. Out: one [`SyntaxError`]. Common
+//! mistakes are recognised one after the other; what is left is "expected ..., found ...".
+
+use pest::error::{Error, ErrorVariant, InputLocation};
+
+use super::error::SyntaxError;
+use super::grammar::{Rule, is_reserved};
+use super::scan::{Token, TokenKind};
+use super::words::{NAMES, OPERATOR, STATEMENTS, in_words, words_that_begin};
+use crate::base::{FileId, Span};
+use crate::syntax::MAX_NESTING;
+
+/// The error of a text that is not in the language.
+pub fn explain(file: FileId, text: &str, tokens: &[Token], error: &Error<Rule>) -> SyntaxError {
+    let at = match error.location {
+        InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
+    };
+    let ErrorVariant::ParsingError { positives, .. } = &error.variant else {
+        // The only other variant says that the stack is full, which the bound on nesting excludes.
+        return SyntaxError::TooDeep { span: Span::new(file, at, at), limit: MAX_NESTING };
+    };
+    let found = tokens.partition_point(|token| token.end <= at);
+    let failure = Failure { file, text, tokens, found, fitting: positives };
+    failure
+        .wrong_assignment()
+        .or_else(|| failure.chained_comparison())
+        .or_else(|| failure.argument_style())
+        .or_else(|| failure.misspelt_keyword())
+        .or_else(|| failure.reserved_word())
+        .unwrap_or_else(|| failure.unexpected())
+}
+
+/// Where the grammar gave up.
+struct Failure<'t> {
+    file: FileId,
+    text: &'t str,
+    tokens: &'t [Token],
+    /// The number of the token that did not fit; beyond the last one at the end of the file.
+    found: usize,
+    /// The rules that would have fitted.
+    fitting: &'t [Rule],
+}
+
+impl Failure<'_> {
+    fn fits(&self, rule: Rule) -> bool {
+        self.fitting.contains(&rule)
+    }
+
+    /// The text of a token, empty beyond the ends.
+    fn token(&self, k: Option<usize>) -> &str {
+        k.and_then(|k| self.tokens.get(k)).map_or("", |token| &self.text[token.start..token.end])
+    }
+
+    fn found(&self) -> &str {
+        self.token(Some(self.found))
+    }
+
+    fn before(&self, steps: usize) -> &str {
+        self.token(self.found.checked_sub(steps))
+    }
+
+    fn span_of(&self, k: usize) -> Span {
+        match self.tokens.get(k) {
+            Some(token) => Span::new(self.file, token.start, token.end),
+            None => Span::new(self.file, self.text.len(), self.text.len()),
+        }
+    }
+
+    fn span(&self) -> Span {
+        self.span_of(self.found)
+    }
+
+    fn is_word(&self, k: usize) -> bool {
+        self.tokens.get(k).is_some_and(|token| token.kind == TokenKind::Word)
+    }
+
+    fn wrong_assignment(&self) -> Option<SyntaxError> {
+        let (sign, name) = (self.found(), self.before(1));
+        if !matches!(sign, "=" | ":=" | "==" | "~") {
+            return None;
+        }
+        let (title, help) = if self.fits(Rule::assign) {
+            (format!("an action does not assign with `{sign}`"), "write `:=`".to_string())
+        } else if self.fits(Rule::prime) && self.in_flow() {
+            ("a flow gives rates, not values".to_string(), format!("write `{name}' = ...`, with a quote"))
+        } else if self.fits(Rule::equals) && name == "'" {
+            (format!("a rate is not given with `{sign}`"), "write `x' = ...`".to_string())
+        } else if self.fits(Rule::equals) {
+            (
+                format!("a value is not given with `{sign}` here"),
+                "write `=`; only actions assign with `:=`".to_string(),
+            )
+        } else if sign == "=" && self.fits(Rule::compare_op) {
+            ("`=` does not compare".to_string(), "write `==`".to_string())
+        } else {
+            return None;
+        };
+        Some(SyntaxError::WrongAssignment { span: self.span(), title, help })
+    }
+
+    /// The tokens before the failure's innermost open bracket: its own number, if there is one.
+    fn opener(&self) -> Option<usize> {
+        let mut closed = 0_usize;
+        for k in (0..self.found.min(self.tokens.len())).rev() {
+            match self.token(Some(k)) {
+                ")" | "]" | "}" => closed += 1,
+                "(" | "[" | "{" if closed == 0 => return Some(k),
+                "(" | "[" | "{" => closed -= 1,
+                _ => {}
+            }
+        }
+        None
+    }
+
+    fn in_flow(&self) -> bool {
+        self.token(self.opener().and_then(|open| open.checked_sub(1))) == "flow"
+    }
+
+    fn chained_comparison(&self) -> Option<SyntaxError> {
+        let second = matches!(self.found(), "<" | "<=" | ">" | ">=" | "==" | "!=" | "is");
+        let after_first = self.fits(Rule::plus) && !self.fits(Rule::compare_op);
+        (second && after_first).then(|| SyntaxError::ChainedComparison { span: self.span() })
+    }
+
+    fn argument_style(&self) -> Option<SyntaxError> {
+        let open = self.opener()?;
+        if self.token(Some(open)) != "(" || open == 0 {
+            return None;
+        }
+        let called = self.is_word(open - 1) || self.token(Some(open - 1)) == "]";
+        if !called {
+            return None;
+        }
+        let only =
+            |rules: &[Rule]| !self.fitting.is_empty() && self.fitting.iter().all(|rule| rules.contains(rule));
+        if only(&[Rule::equals, Rule::tilde]) {
+            let (title, help) = ("the arguments of a constructor have names", "write `Car(v = 4)`");
+            return Some(SyntaxError::ArgumentStyle { span: self.span_of(self.found - 1), title, help });
+        }
+        if only(&[Rule::named_arg, Rule::close_paren, Rule::name])
+            && self.is_constructor(open)
+            && !self.is_word(self.found)
+        {
+            let (title, help) = ("the arguments of a constructor have names", "write `Car(v = 4)`");
+            return Some(SyntaxError::ArgumentStyle { span: self.span(), title, help });
+        }
+        if matches!(self.found(), "=" | "~") && self.fits(Rule::comma) && self.fits(Rule::close_paren) {
+            let (title, help) =
+                ("the arguments of a call have no names", "give them by their position: `f(1, 2)`");
+            return Some(SyntaxError::ArgumentStyle { span: self.span(), title, help });
+        }
+        None
+    }
+
+    /// Whether the parenthesis with this number is that of a constructor: behind `name =` or `create`.
+    fn is_constructor(&self, open: usize) -> bool {
+        let mut k = open - 1;
+        while k > 0 && !matches!(self.token(Some(k)), "=" | "create" | "{" | "}" | "(") {
+            k -= 1;
+        }
+        matches!(self.token(Some(k)), "=" | "create") && self.found() != ")"
+    }
+
+    /// The keywords that would have fitted at the failure.
+    fn keywords(&self) -> impl Iterator<Item = String> {
+        let mut words = Vec::new();
+        for rule in self.fitting {
+            words.extend(words_that_begin(*rule));
+        }
+        words.into_iter()
+    }
+
+    /// `sate x, y`: a word, taken for a name, that begins no statement but looks like a keyword.
+    fn misspelt_keyword(&self) -> Option<SyntaxError> {
+        let candidates = [self.found.checked_sub(1), Some(self.found)];
+        for k in candidates.into_iter().flatten().filter(|&k| self.is_word(k)) {
+            let word = self.token(Some(k));
+            if is_reserved(word) {
+                continue;
+            }
+            let as_found = k == self.found;
+            let after_name = self.fits(Rule::colon)
+                || self.fits(Rule::assign)
+                || self.fits(Rule::prime)
+                || self.fits(Rule::arrow);
+            if !as_found && !(after_name && self.begins_statement(k)) {
+                continue;
+            }
+            let known: Vec<String> = if as_found {
+                self.keywords().collect()
+            } else {
+                STATEMENTS.iter().map(|word| word.to_string()).collect()
+            };
+            let close =
+                known.into_iter().map(|keyword| (strsim::osa_distance(word, &keyword), keyword)).min();
+            if let Some((distance, keyword)) = close
+                && distance <= if word.len() > 4 { 2 } else { 1 }
+            {
+                return Some(SyntaxError::MisspeltKeyword {
+                    span: self.span_of(k),
+                    word: word.to_string(),
+                    keyword,
+                });
+            }
+        }
+        None
+    }
+
+    /// Whether nothing before this word on its line is part of a statement that goes on.
+    fn begins_statement(&self, k: usize) -> bool {
+        let start = self.tokens[k].start;
+        let line = self.text[..start].rfind(['\n', ';', '{', '}']).map_or(0, |at| at + 1);
+        self.text[line..start].trim().is_empty()
+    }
+
+    fn reserved_word(&self) -> Option<SyntaxError> {
+        let word = self.found();
+        if !self.is_word(self.found) || !is_reserved(word) {
+            return None;
+        }
+        let names = |rule: &Rule| NAMES.contains(rule);
+        let only_names = self
+            .fitting
+            .iter()
+            .all(|rule| names(rule) || *rule == Rule::close_paren || *rule == Rule::kw_other);
+        let named = self.fitting.iter().any(names);
+        let like_a_name = matches!(self.token(Some(self.found + 1)), "=" | ":=" | ":" | "~" | "'");
+        let statement = self.keywords().count() > 3;
+        (named && only_names || like_a_name && (named || statement))
+            .then(|| SyntaxError::ReservedWord { span: self.span(), word: word.to_string() })
+    }
+
+    fn unexpected(&self) -> SyntaxError {
+        let found = match self.tokens.get(self.found) {
+            None => "the end of the file".to_string(),
+            Some(token) => match token.kind {
+                TokenKind::Word if is_reserved(self.found()) => {
+                    format!("the reserved word `{}`", self.found())
+                }
+                TokenKind::Word => format!("the name `{}`", self.found()),
+                TokenKind::Number => format!("the number `{}`", self.found()),
+                TokenKind::Text => "a string".to_string(),
+                TokenKind::Symbol => format!("`{}`", self.found()),
+            },
+        };
+        SyntaxError::Unexpected { span: self.span(), expected: self.expected(), found, help: self.help() }
+    }
+
+    /// What would have fitted, in words, each once; operators only if there is nothing else.
+    fn expected(&self) -> Vec<String> {
+        let mut words = Vec::new();
+        for rule in self.fitting {
+            for word in in_words(*rule) {
+                if !words.contains(&word) {
+                    words.push(word);
+                }
+            }
+        }
+        if words.len() > 1 {
+            words.retain(|word| word != OPERATOR);
+        }
+        let begins = |word: &String| STATEMENTS.iter().any(|keyword| *word == format!("`{keyword}`"));
+        if words.iter().filter(|word| begins(word)).count() > 3 {
+            words.retain(|word| !begins(word) && word != "`:`");
+            words.insert(0, "a statement".to_string());
+        }
+        words
+    }
+
+    fn help(&self) -> Option<String> {
+        match self.found() {
+            "{" if self.fits(Rule::kw_then) => {
+                Some("in an expression write `if c then a else b`".to_string())
+            }
+            "then" => Some("among actions write `if c { ... } else { ... }`".to_string()),
+            "," if self.fits(Rule::close_brace) => Some("statements need no separator".to_string()),
+            "not" => Some("put the condition in parentheses: `(not p)`".to_string()),
+            _ => None,
+        }
+    }
+}
