@@ -1,4 +1,4 @@
-//! Writes a tree as an indented outline, one node a line: what `hyc show --stage ast` prints.
+//! Writes a tree as an indented outline, one statement a line: what `hyc show --stage ast` prints.
 //!
 //! Every fact of the tree is in it except the places, so two texts mean the same tree if and only if their outlines are
 //! equal.
@@ -6,6 +6,7 @@
 mod expr;
 
 use super::ast::*;
+use expr::Flat;
 
 /// The outline of a tree.
 pub fn dump(ast: &Ast) -> String {
@@ -41,14 +42,18 @@ impl Outline {
         match item {
             Item::Import(import) => self.line(&format!("import {:?}", import.path.value)),
             Item::Param(param) => {
-                let head = format!("param {}{}", param.name.text, annotation(&param.ty));
-                self.node(&head, |o| o.expr(&param.value));
+                self.line(&format!(
+                    "param {}{} = {}",
+                    param.name.text,
+                    annotation(&param.ty),
+                    Flat(&param.value)
+                ));
             }
             Item::Let(definition) => self.definition(definition),
             Item::Fn(function) => {
                 self.node(&format!("fn {}{}", function.name.text, annotation(&function.ty)), |o| {
                     o.formals(&function.formals);
-                    o.expr(&function.body);
+                    o.line(&format!("= {}", Flat(&function.body)));
                 })
             }
             Item::Agent(agent) => self.node(&format!("agent {}", agent.name.text), |o| {
@@ -78,14 +83,18 @@ impl Outline {
     }
 
     fn definition(&mut self, definition: &Let) {
-        let head = format!("let {}{}", definition.name.text, annotation(&definition.ty));
-        self.node(&head, |o| o.expr(&definition.value));
+        self.line(&format!(
+            "let {}{} = {}",
+            definition.name.text,
+            annotation(&definition.ty),
+            Flat(&definition.value)
+        ));
     }
 
     fn formals(&mut self, formals: &[Formal]) {
         for formal in formals {
-            let head = format!("formal {}: {}", formal.name.text, type_name(&formal.ty));
-            self.node(&head, |o| formal.default.iter().for_each(|default| o.expr(default)));
+            let default = clause(" = ", &formal.default);
+            self.line(&format!("formal {}: {}{default}", formal.name.text, type_name(&formal.ty)));
         }
     }
 
@@ -101,7 +110,7 @@ impl Outline {
             AgentItem::Link(link) => {
                 let target =
                     link.target.iter().map(|target| format!(": {}", target.text)).collect::<String>();
-                self.node(&format!("link {}{target}", link.name.text), |o| o.optional(&link.value));
+                self.line(&format!("link {}{target}{}", link.name.text, clause(" = ", &link.value)));
             }
             AgentItem::Event(event) => {
                 self.node(&format!("event {}", event.name.text), |o| o.formals(&event.formals))
@@ -114,16 +123,8 @@ impl Outline {
     }
 
     fn variable(&mut self, variable: &Variable) {
-        let head = format!("variable {}{}", variable.name.text, annotation(&variable.ty));
-        self.node(&head, |o| variable.initial.iter().for_each(|given| o.given(given)));
-    }
-
-    fn given(&mut self, given: &Given) {
-        let sign = match given.kind {
-            GivenKind::Value => "=",
-            GivenKind::Draw => "~",
-        };
-        self.node(sign, |o| o.expr(&given.value));
+        let initial = variable.initial.iter().map(given).collect::<String>();
+        self.line(&format!("variable {}{}{initial}", variable.name.text, annotation(&variable.ty)));
     }
 
     fn body(&mut self, items: &[BodyItem]) {
@@ -135,7 +136,7 @@ impl Outline {
             BodyItem::Let(definition) => self.definition(definition),
             BodyItem::Flow(flow) => self.node("flow", |o| {
                 for equation in &flow.equations {
-                    o.node(&format!("{}' =", equation.state.text), |o| o.expr(&equation.rate));
+                    o.line(&format!("{}' = {}", equation.state.text, Flat(&equation.rate)));
                 }
             }),
             BodyItem::Invariant(claim) => self.claim("invariant", claim),
@@ -151,7 +152,7 @@ impl Outline {
     }
 
     fn claim(&mut self, word: &str, claim: &Claim) {
-        self.node(&format!("{word}{}", text_after(&claim.message)), |o| o.expr(&claim.condition));
+        self.line(&format!("{word} {}{}", Flat(&claim.condition), text_after(&claim.message)));
     }
 
     fn transition(&mut self, transition: &Transition) {
@@ -159,7 +160,7 @@ impl Outline {
         let target = transition.target.iter().map(|to| format!(" -> {}", target(to))).collect::<String>();
         self.node(&format!("transition{label}{target}"), |o| {
             o.trigger(&transition.trigger);
-            o.labelled("priority", &transition.priority);
+            o.labelled("priority ", &transition.priority);
             transition.actions.iter().for_each(|actions| o.actions("actions", actions));
         });
     }
@@ -167,20 +168,15 @@ impl Outline {
     fn trigger(&mut self, trigger: &Trigger) {
         match &trigger.kind {
             TriggerKind::When => {}
-            TriggerKind::After(delay) => self.node("after", |o| o.expr(delay)),
-            TriggerKind::Every(period) => self.node("every", |o| o.expr(period)),
-            TriggerKind::Rate(hazard) => self.node("rate", |o| o.expr(hazard)),
+            TriggerKind::After(delay) => self.line(&format!("after {}", Flat(delay))),
+            TriggerKind::Every(period) => self.line(&format!("every {}", Flat(period))),
+            TriggerKind::Rate(hazard) => self.line(&format!("rate {}", Flat(hazard))),
             TriggerKind::On { event, binders, sender } => {
                 let binders = binders.iter().map(|binder| format!(" {}", binder.text)).collect::<String>();
-                self.node(&format!("on {}", event.text), |o| {
-                    if !binders.is_empty() {
-                        o.line(&format!("binders{binders}"));
-                    }
-                    o.labelled("from", sender);
-                });
+                self.line(&format!("on {}{binders}{}", event.text, clause(" from ", sender)));
             }
         }
-        self.labelled("when", &trigger.guard);
+        self.labelled("when ", &trigger.guard);
     }
 
     fn actions(&mut self, word: &str, actions: &Actions) {
@@ -189,23 +185,23 @@ impl Outline {
 
     fn action(&mut self, action: &Action) {
         match &action.kind {
-            ActionKind::Assign { place, given } => {
+            ActionKind::Assign { place, given: value } => {
                 let owner = place.owner.iter().map(|owner| format!("{}.", owner.text)).collect::<String>();
-                self.node(&format!("assign {owner}{}", place.variable.text), |o| o.given(given));
+                self.line(&format!("assign {owner}{}{}", place.variable.text, given(value)));
             }
             ActionKind::Create(constructor) => self.node("create", |o| o.constructor(constructor)),
-            ActionKind::Destroy(agent) => self.node("destroy", |o| o.expr(agent)),
-            ActionKind::Emit { event, args, delay } => self.node(&format!("emit {}", event.text), |o| {
-                args.iter().for_each(|arg| o.expr(arg));
-                o.labelled("after", delay);
-            }),
+            ActionKind::Destroy(agent) => self.line(&format!("destroy {}", Flat(agent))),
+            ActionKind::Emit { event, args, delay } => {
+                let args = args.iter().map(|arg| format!(" {}", Flat(arg))).collect::<String>();
+                self.line(&format!("emit {}{args}{}", event.text, clause(" after ", delay)));
+            }
             ActionKind::ChangeMode { participant, target: to } => {
                 self.line(&format!("{} -> {}", participant.text, target(to)));
             }
             ActionKind::Stop(reason) => self.line(&format!("stop{}", text_after(reason))),
             ActionKind::If { branches, otherwise } => {
                 for branch in branches {
-                    self.node("if", |o| o.expr(&branch.condition));
+                    self.line(&format!("if {}", Flat(&branch.condition)));
                     self.actions("then", &branch.actions);
                 }
                 otherwise.iter().for_each(|actions| self.actions("else", actions));
@@ -225,13 +221,13 @@ impl Outline {
         self.node(&format!("new {}{start}", constructor.agent.text), |o| {
             match &constructor.count {
                 None => {}
-                Some(Count::Exactly(count)) => o.node("count", |o| o.expr(count)),
+                Some(Count::Exactly(count)) => o.line(&format!("count {}", Flat(count))),
                 Some(Count::AllRows(_)) => o.line("count of rows"),
             }
             for arg in &constructor.args {
-                o.node(&format!("argument {}", arg.name.text), |o| o.given(&arg.given));
+                o.line(&format!("argument {}{}", arg.name.text, given(&arg.given)));
             }
-            o.labelled("from", &constructor.source);
+            o.labelled("from ", &constructor.source);
         });
     }
 
@@ -247,48 +243,52 @@ impl Outline {
             }),
             FormulaKind::Until { before, window, goal } => self.node("until", |o| {
                 o.window(window);
-                o.expr(before);
-                o.expr(goal);
+                o.line(&format!("before {}", Flat(before)));
+                o.line(&format!("goal {}", Flat(goal)));
             }),
-            FormulaKind::Holds(condition) => self.expr(condition),
+            FormulaKind::Holds(condition) => self.line(&format!("holds {}", Flat(condition))),
         }
     }
 
     fn window(&mut self, window: &Option<Window>) {
         if let Some(window) = window {
-            self.node("window", |o| {
-                o.expr(&window.from);
-                o.expr(&window.to);
-            });
+            self.line(&format!("window {} to {}", Flat(&window.from), Flat(&window.to)));
         }
     }
 
     fn setting(&mut self, setting: &RunSetting) {
         match &setting.kind {
-            RunSettingKind::Until(end) => self.node("until", |o| o.expr(end)),
-            RunSettingKind::StopWhen(condition) => self.node("stop when", |o| o.expr(condition)),
+            RunSettingKind::Until(end) => self.line(&format!("until {}", Flat(end))),
+            RunSettingKind::StopWhen(condition) => self.line(&format!("stop when {}", Flat(condition))),
             RunSettingKind::Record { columns, period, file } => {
                 self.node(&format!("record to {:?}", file.value), |o| {
-                    columns.iter().for_each(|column| o.expr(column));
-                    o.labelled("every", period);
+                    columns.iter().for_each(|column| o.line(&format!("column {}", Flat(column))));
+                    o.labelled("every ", period);
                 })
             }
             RunSettingKind::Output { name, file } => self.line(&format!("{} to {:?}", name.text, file.value)),
-            RunSettingKind::Set { name, value } => {
-                self.node(&format!("set {}", name.text), |o| o.expr(value))
-            }
+            RunSettingKind::Set { name, value } => self.line(&format!("set {} {}", name.text, Flat(value))),
         }
     }
 
-    fn optional(&mut self, expr: &Option<Expr>) {
-        expr.iter().for_each(|expr| self.expr(expr));
-    }
-
+    /// A line of a word and an expression, if there is one.
     fn labelled(&mut self, word: &str, expr: &Option<Expr>) {
         if let Some(expr) = expr {
-            self.node(word, |o| o.expr(expr));
+            self.line(&format!("{word}{}", Flat(expr)));
         }
     }
+}
+
+fn clause(word: &str, expr: &Option<Expr>) -> String {
+    expr.iter().map(|expr| format!("{word}{}", Flat(expr))).collect()
+}
+
+fn given(given: &Given) -> String {
+    let sign = match given.kind {
+        GivenKind::Value => '=',
+        GivenKind::Draw => '~',
+    };
+    format!(" {sign} {}", Flat(&given.value))
 }
 
 fn text_after(text: &Option<Text>) -> String {

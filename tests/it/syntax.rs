@@ -21,6 +21,7 @@ fn read(text: &str) -> Result<String, String> {
     }
 }
 
+#[allow(dead_code)]
 fn refuse(text: &str) -> String {
     read(text).expect_err("this text is wrong")
 }
@@ -32,4 +33,20 @@ fn the_three_programs_of_the_reference_are_read_unchanged() {
             insta::assert_snapshot!(name, read(text).unwrap());
         });
     }
+}
+
+#[test]
+fn what_the_printer_writes_is_read_as_the_same_tree() {
+    for (_, text) in PROGRAMS {
+        assert_round_trip(text);
+    }
+}
+
+/// Parsing what is printed gives the same tree, and printing that the same text.
+fn assert_round_trip(text: &str) {
+    let ast = syntax::parse(FileId(0), text).unwrap_or_else(|errors| panic!("{text}\n{errors:?}"));
+    let printed = syntax::print(&ast);
+    let again = syntax::parse(FileId(0), &printed).unwrap_or_else(|errors| panic!("{printed}\n{errors:?}"));
+    assert_eq!(syntax::dump(&ast), syntax::dump(&again), "{printed}");
+    assert_eq!(printed, syntax::print(&again));
 }

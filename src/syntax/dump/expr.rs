@@ -1,68 +1,71 @@
-//! Expressions in the outline.
+//! An expression on one line, each node that is not a leaf or a suffix in parentheses of its own.
 
-use std::ops::Fn;
+use std::fmt;
 
-use super::{Outline, target, unit_after};
+use super::{target, unit_after};
 use crate::syntax::ast::*;
 
-impl Outline {
-    pub(super) fn expr(&mut self, expr: &Expr) {
-        match &expr.kind {
-            ExprKind::Number { text, unit, value: _ } => self.line(&format!("{text}{}", unit_after(unit))),
-            ExprKind::Text(text) => self.line(&format!("{text:?}")),
-            ExprKind::Name(name) => self.line(name),
-            ExprKind::List(items) => self.node("list", |o| o.exprs(items)),
-            ExprKind::Field(base, field) => self.node(&format!(".{}", field.text), |o| o.expr(base)),
-            ExprKind::Call { callee, args } => self.node("call", |o| {
-                o.expr(callee);
-                o.exprs(args);
-            }),
-            ExprKind::Index(base, index) => self.pair("index", base, index),
-            ExprKind::Prime(base) => self.node("prime", |o| o.expr(base)),
-            ExprKind::Unary(UnaryOp::Neg, operand) => self.node("negate", |o| o.expr(operand)),
-            ExprKind::Unary(UnaryOp::Not, operand) => self.node("not", |o| o.expr(operand)),
-            ExprKind::Power(base, exponent) => self.pair("^", base, exponent),
-            ExprKind::Sum(chain) => self.chain("sum", chain, SumOp::sign),
-            ExprKind::Product(chain) => self.chain("product", chain, ProductOp::sign),
-            ExprKind::Compare(op, left, right) => self.pair(op.sign(), left, right),
-            ExprKind::Is(agent, mode) => self.node(&format!("is {}", target(mode)), |o| o.expr(agent)),
-            ExprKind::And(terms) => self.node("and", |o| o.exprs(terms)),
-            ExprKind::Or(terms) => self.node("or", |o| o.exprs(terms)),
-            ExprKind::If { condition, then, otherwise } => self.node("if", |o| {
-                o.expr(condition);
-                o.expr(then);
-                o.expr(otherwise);
-            }),
-            ExprKind::Quantifier(quantifier) => self.quantifier(quantifier),
+/// Shows an expression with its structure made plain: `(a + (b*c))`.
+pub struct Flat<'e>(pub &'e Expr);
+
+impl fmt::Display for Flat<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0.kind {
+            ExprKind::Number { text, unit, value: _ } => write!(f, "{text}{}", unit_after(unit)),
+            ExprKind::Text(text) => write!(f, "{text:?}"),
+            ExprKind::Name(name) => f.write_str(name),
+            ExprKind::List(items) => joined(f, "[", items, ", ", "]"),
+            ExprKind::Field(base, field) => write!(f, "{}.{}", Flat(base), field.text),
+            ExprKind::Call { callee, args } => {
+                write!(f, "{}", Flat(callee))?;
+                joined(f, "(", args, ", ", ")")
+            }
+            ExprKind::Index(base, index) => write!(f, "{}[{}]", Flat(base), Flat(index)),
+            ExprKind::Prime(base) => write!(f, "{}'", Flat(base)),
+            ExprKind::Unary(UnaryOp::Neg, operand) => write!(f, "(-{})", Flat(operand)),
+            ExprKind::Unary(UnaryOp::Not, operand) => write!(f, "(not {})", Flat(operand)),
+            ExprKind::Power(base, exponent) => write!(f, "({}^{})", Flat(base), Flat(exponent)),
+            ExprKind::Sum(chain) => {
+                write!(f, "({}", Flat(&chain.first))?;
+                chain
+                    .rest
+                    .iter()
+                    .try_for_each(|link| write!(f, " {} {}", link.op.sign(), Flat(&link.operand)))?;
+                f.write_str(")")
+            }
+            ExprKind::Product(chain) => {
+                write!(f, "({}", Flat(&chain.first))?;
+                chain
+                    .rest
+                    .iter()
+                    .try_for_each(|link| write!(f, "{}{}", link.op.sign(), Flat(&link.operand)))?;
+                f.write_str(")")
+            }
+            ExprKind::Compare(op, left, right) => write!(f, "({} {} {})", Flat(left), op.sign(), Flat(right)),
+            ExprKind::Is(agent, mode) => write!(f, "({} is {})", Flat(agent), target(mode)),
+            ExprKind::And(terms) => joined(f, "(", terms, " and ", ")"),
+            ExprKind::Or(terms) => joined(f, "(", terms, " or ", ")"),
+            ExprKind::If { condition, then, otherwise } => {
+                write!(f, "(if {} then {} else {})", Flat(condition), Flat(then), Flat(otherwise))
+            }
+            ExprKind::Quantifier(quantifier) => write_quantifier(f, quantifier),
         }
     }
+}
 
-    fn exprs(&mut self, exprs: &[Expr]) {
-        exprs.iter().for_each(|expr| self.expr(expr));
+fn joined(f: &mut fmt::Formatter<'_>, open: &str, exprs: &[Expr], between: &str, close: &str) -> fmt::Result {
+    f.write_str(open)?;
+    for (k, expr) in exprs.iter().enumerate() {
+        write!(f, "{}{}", if k > 0 { between } else { "" }, Flat(expr))?;
     }
+    f.write_str(close)
+}
 
-    fn pair(&mut self, line: &str, left: &Expr, right: &Expr) {
-        self.node(line, |o| {
-            o.expr(left);
-            o.expr(right);
-        });
-    }
-
-    fn chain<Op: Copy>(&mut self, line: &str, chain: &Chain<Op>, sign: impl Fn(Op) -> &'static str) {
-        self.node(line, |o| {
-            o.expr(&chain.first);
-            for link in &chain.rest {
-                o.node(sign(link.op), |o| o.expr(&link.operand));
-            }
-        });
-    }
-
-    fn quantifier(&mut self, quantifier: &Quantifier) {
-        let Quantifier { kind, binder, other, set, filter, body } = quantifier;
-        let other = if other.is_some() { "other " } else { "" };
-        self.node(&format!("{} {} in {other}{}", kind.word(), binder.text, set.text), |o| {
-            o.labelled("where", filter);
-            o.labelled("body", body);
-        });
-    }
+fn write_quantifier(f: &mut fmt::Formatter<'_>, quantifier: &Quantifier) -> fmt::Result {
+    let Quantifier { kind, binder, other, set, filter, body } = quantifier;
+    let other = if other.is_some() { "other " } else { "" };
+    write!(f, "({} {} in {other}{}", kind.word(), binder.text, set.text)?;
+    filter.iter().try_for_each(|filter| write!(f, " where {}", Flat(filter)))?;
+    body.iter().try_for_each(|body| write!(f, ": {}", Flat(body)))?;
+    f.write_str(")")
 }
