@@ -2,3 +2,4 @@
 
 mod elementary;
 mod op;
+mod interval;
