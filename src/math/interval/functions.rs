@@ -244,6 +244,9 @@ impl Interval {
     fn pow_of_positive(self, exponent: Self) -> Self {
         let corner = |x: f64, y: f64| Self::point(scalar::pow(x.abs(), y));
         let at_lo = corner(self.lo, exponent.lo).hull(corner(self.hi, exponent.lo));
+        if exponent.is_point() {
+            return Self { lo: below(at_lo.lo).max(0.0), hi: above(at_lo.hi) };
+        }
         let at_hi = corner(self.lo, exponent.hi).hull(corner(self.hi, exponent.hi));
         let all = at_lo.hull(at_hi);
         Self { lo: below(all.lo).max(0.0), hi: above(all.hi) }
