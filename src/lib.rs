@@ -5,5 +5,6 @@ pub mod math;
 pub mod syntax;
 pub mod model;
 pub mod calculus;
+pub mod codegen;
 pub mod runtime;
 pub mod output;

@@ -8,7 +8,7 @@
 use std::cell::RefCell;
 
 use crate::codegen::interpret;
-use crate::codegen::jit::{KernelCode, StepCode};
+use crate::codegen::jit::{KernelCode, StepCode, StepRows};
 use crate::codegen::tape::{Instruction, Row, Tape};
 use crate::math::Interval;
 
@@ -221,7 +221,7 @@ impl StepKernel {
         let room = k.len() >= 7 * self.n && x_new.len() >= self.n && err.len() >= self.n;
         assert!(room, "no room for the step");
         // SAFETY: all lengths that the code relies on were just asserted.
-        unsafe { self.code.call(self.reads.slots.len(), slots, time, h, k, x_new, err) };
+        unsafe { self.code.call(self.reads.slots.len(), slots, time, h, StepRows { k, x_new, err }) };
     }
 
     /// How many states there are.

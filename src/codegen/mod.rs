@@ -4,9 +4,12 @@
 //! Promised: each function is compiled once, however many agents there are; a kernel gives the same bits interpreted
 //! and as machine code, those of `Op::eval` in the order of the graph; the same system gives the same code.
 
-pub mod tape;
-pub mod interpret;
-pub mod jit;
+mod tape;
+mod interpret;
+mod emit;
+mod step;
+mod routine;
+mod jit;
 pub mod kernel;
 pub mod program;
 
@@ -14,7 +17,8 @@ use std::time::Instant;
 
 use crate::base::Diagnostic;
 use crate::calculus::system::System;
-use crate::codegen::kernel::Kernel;
+use crate::codegen::jit::Code;
+use crate::codegen::kernel::{Kernel, StepKernel};
 use crate::codegen::program::{Cost, Program};
 use crate::codegen::tape::Tape;
 
@@ -31,13 +35,12 @@ pub enum Backend {
 pub fn compile(system: System, backend: Backend) -> Result<Program, Diagnostic> {
     let start = Instant::now();
     let tapes = record(&system);
-    let instructions = tapes.iter().map(|tape| tape.instructions.len()).sum();
-    let _ = backend;
-    let steps = system.types.iter().map(|ty| ty.modes.iter().map(|_| None).collect()).collect();
-    let kernels: Vec<Kernel> = tapes.into_iter().map(|tape| Kernel::new(tape, None)).collect();
-    let cost = Cost { instructions, seconds: start.elapsed().as_secs_f64(), ..Cost::default() };
-    let System { types, interactions, population, run, .. } = system;
-    Ok(Program { types, interactions, population, run, kernels, steps, cost })
+    let code = match backend {
+        Backend::Interpreter => Code::none(tapes.len()),
+        Backend::Jit => jit::assemble(&routine::routines(&system, &tapes), tapes.len())?,
+    };
+    let cost = measure(&tapes, &code, start);
+    Ok(link(system, tapes, code, cost))
 }
 
 /// A tape for each function, same number.
@@ -45,18 +48,44 @@ fn record(system: &System) -> Vec<Tape> {
     system.functions.iter().map(|function| tape::record(&system.graph, &function.outputs)).collect()
 }
 
-/// The tapes of all functions, as text.
+/// What it took.
+fn measure(tapes: &[Tape], code: &Code, start: Instant) -> Cost {
+    let compiled = code.kernels.iter().flatten().count();
+    Cost {
+        functions: compiled + code.steps.len(),
+        interpreted: tapes.len() - compiled,
+        instructions: tapes.iter().map(|tape| tape.instructions.len()).sum(),
+        code_bytes: code.bytes,
+        seconds: start.elapsed().as_secs_f64(),
+    }
+}
+
+/// Puts structure, tapes and machine code together.
+fn link(system: System, tapes: Vec<Tape>, code: Code, cost: Cost) -> Program {
+    let modes = system.types.iter().map(|ty| ty.modes.len());
+    let mut steps: Vec<Vec<Option<StepKernel>>> = modes.map(|n| (0..n).map(|_| None).collect()).collect();
+    for (task, code) in code.steps {
+        steps[task.ty][task.mode] = Some(StepKernel::new(&tapes[task.function], code));
+    }
+    let kernels = tapes.into_iter().zip(code.kernels).map(|(tape, code)| Kernel::new(tape, code)).collect();
+    let System { types, interactions, population, run, .. } = system;
+    Program { types, interactions, population, run, kernels, steps, cost }
+}
+
+/// The tapes of all functions, as text (`hyc show --stage tape`).
 pub fn dump_tape(system: &System) -> String {
-    let listings = system.functions.iter().map(|function| {
-        let tape = tape::record(&system.graph, &function.outputs);
+    let tapes = record(system);
+    let listings = system.functions.iter().zip(&tapes).map(|(function, tape)| {
         let (n, m) = (tape.instructions.len(), tape.n_registers);
         format!("{}: {n} instructions, {m} registers\n{tape}", function.name)
     });
     listings.collect::<Vec<_>>().join("\n")
 }
 
-/// The Cranelift IR of all functions, as text.
+/// The Cranelift IR of all functions, before optimisation, as text (`hyc show --stage clif`): the same on every host.
 pub fn dump_clif(system: &System) -> String {
-    let _ = system;
-    String::new()
+    let tapes = record(system);
+    let routines = routine::routines(system, &tapes);
+    let listings = routines.iter().enumerate().map(|(number, routine)| routine.listing(number));
+    listings.collect::<Vec<_>>().join("\n")
 }

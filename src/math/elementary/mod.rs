@@ -24,4 +24,4 @@ pub use library::{acos, acosh, asin, asinh, atanh, cosh, log2, log10, sinh, tan,
 pub use logarithm::log;
 pub use power::pow;
 pub use root::{cbrt, hypot};
-pub use sincos::{cos, sin};
+pub use sincos::{cos, sin, sin_cos};

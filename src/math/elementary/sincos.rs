@@ -57,6 +57,16 @@ pub fn cos(x: f64) -> f64 {
     in_quadrant(angle.quadrant.wrapping_add(1), sine_kernel(angle), cosine_kernel(angle))
 }
 
+/// Both for little more than the price of one: the bits of [`sin`] and of [`cos`].
+#[inline]
+pub fn sin_cos(x: f64) -> (f64, f64) {
+    let angle = reduce(x);
+    let (sine, cosine) = (sine_kernel(angle), cosine_kernel(angle));
+    let value = in_quadrant(angle.quadrant, sine, cosine);
+    let sine_of_x = if x.abs() < TINY { x } else { value };
+    (sine_of_x, in_quadrant(angle.quadrant.wrapping_add(1), sine, cosine))
+}
+
 /// Below this `sin(x)` rounds to `x`; -0 stays -0.
 const TINY: f64 = 1.0 / 134_217_728.0;
 
