@@ -1,6 +1,6 @@
 //! The expression graph: hash-consed, operands before their users.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::base::{Arena, Idx};
 use crate::math::Op;
@@ -51,11 +51,45 @@ pub enum Node {
     Select(NodeId, NodeId, NodeId),
 }
 
+impl Node {
+    /// The nodes it is computed from, in order.
+    pub fn operands(self) -> impl DoubleEndedIterator<Item = NodeId> {
+        let operands = match self {
+            Node::Unary(_, a) => [Some(a), None, None],
+            Node::Binary(_, a, b) => [Some(a), Some(b), None],
+            Node::Select(a, b, c) => [Some(a), Some(b), Some(c)],
+            Node::Constant(_) | Node::Time | Node::State { .. } => [None; 3],
+            Node::Rate { .. } | Node::Acceleration { .. } | Node::Aux { .. } => [None; 3],
+        };
+        operands.into_iter().flatten()
+    }
+
+    /// The operator, if it is no leaf.
+    pub fn op(self) -> Option<Op> {
+        match self {
+            Node::Unary(op, _) | Node::Binary(op, _, _) => Some(op),
+            Node::Select(..) => Some(Op::Select),
+            Node::Constant(_) | Node::Time | Node::State { .. } => None,
+            Node::Rate { .. } | Node::Acceleration { .. } | Node::Aux { .. } => None,
+        }
+    }
+
+    /// The slot of the agent that a leaf reads.
+    pub fn slot(self) -> Option<usize> {
+        match self {
+            Node::State { slot, .. } | Node::Rate { slot, .. } => Some(slot as usize),
+            Node::Acceleration { slot, .. } | Node::Aux { slot, .. } => Some(slot as usize),
+            Node::Constant(_) | Node::Time | Node::Unary(..) | Node::Binary(..) | Node::Select(..) => None,
+        }
+    }
+}
+
 /// All nodes of a system.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
     nodes: Arena<Node>,
     known: FxHashMap<Node, NodeId>,
+    moving: Vec<bool>,
 }
 
 impl Graph {
@@ -64,9 +98,37 @@ impl Graph {
         if let Some(&id) = self.known.get(&node) {
             return id;
         }
+        let moves = match node {
+            Node::Constant(_) | Node::Aux { .. } => false,
+            Node::Time | Node::State { .. } | Node::Rate { .. } | Node::Acceleration { .. } => true,
+            Node::Unary(..) | Node::Binary(..) | Node::Select(..) => node.operands().any(|id| self.moves(id)),
+        };
         let id = self.nodes.push(node);
         self.known.insert(node, id);
+        self.moving.push(moves);
         id
+    }
+
+    /// Whether it reads a state, a rate or the time: whether it can change between events.
+    pub fn moves(&self, id: NodeId) -> bool {
+        self.moving[id.index()]
+    }
+
+    /// All nodes that `roots` are computed from, themselves included, operands before users.
+    pub fn reach(&self, roots: &[NodeId]) -> Vec<NodeId> {
+        let mut seen: FxHashSet<NodeId> = roots.iter().copied().collect();
+        let mut found: Vec<NodeId> = seen.iter().copied().collect();
+        let mut next = 0;
+        while let Some(&id) = found.get(next) {
+            next += 1;
+            for operand in self.node(id).operands() {
+                if seen.insert(operand) {
+                    found.push(operand);
+                }
+            }
+        }
+        found.sort_unstable();
+        found
     }
 
     /// The node of a name.

@@ -3,6 +3,44 @@
 //! In: a `Model`. Out: a [`system::System`]: the flow, its Jacobian and second rates, guards with the rates of
 //! Gear & Osterby's extra state, kinks, conditions in normal form.
 //! Promised: simplification changes no value on valid input.
+//!
+//! Letters: g is what an atom compares with zero, f a flow, x a state, u v w e any expressions, y the value of an
+//! operator.
 
 pub mod graph;
 pub mod system;
+mod simplify;
+pub mod evaluate;
+mod derive;
+mod print;
+mod error;
+mod draft;
+mod frame;
+mod build;
+mod condition;
+mod guard;
+mod kinks;
+mod flow;
+mod actions;
+mod symmetry;
+mod agents;
+mod dump;
+
+use crate::base::Diagnostic;
+use crate::calculus::draft::Draft;
+pub use crate::calculus::dump::dump;
+use crate::calculus::system::System;
+use crate::model::ir::Model;
+
+/// The equations of a model, or what is not supported in it.
+pub fn derive(model: &Model) -> Result<System, Vec<Diagnostic>> {
+    let mut draft = Draft::new(model);
+    agents::mode_tree(&mut draft);
+    agents::flows(&mut draft);
+    agents::modes(&mut draft);
+    agents::transitions(&mut draft);
+    agents::lets(&mut draft);
+    let mut interactions = agents::interactions(&mut draft);
+    agents::number_declarations(&mut draft.types, &mut interactions);
+    draft.finish(interactions)
+}

@@ -320,11 +320,14 @@ pub struct Quantified {
 pub struct Atom {
     /// What it is.
     pub relation: Relation,
-    /// One output: g; reads states, aux, time.
+    /// One output: g; reads states, aux, time (and rates, if the source says `x'`).
     pub value: FunctionId,
     /// Three outputs: g, dg/dt, d2g/dt2 along given x' and x'' (Gear & Osterby's extra state and its rate);
-    /// reads states, rates, accelerations, aux, time.
+    /// reads states, rates, accelerations, aux, time. A d2g/dt2 that is not known (g reads x') is NaN.
     pub rates: FunctionId,
+    /// Whether g is continuous between events. If not (it has a floor, a sign, an `if`, an atan2, ... of something that
+    /// moves), the rates hold only between its jumps: an interval of dg/dt then bounds nothing, an interval of g does.
+    pub smooth: bool,
     /// The slots that g reads (states or aux), rising.
     pub slots: Vec<usize>,
     /// The comparison in the words of the source.

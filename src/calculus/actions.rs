@@ -1,0 +1,118 @@
+//! Lists of actions: right-hand sides as functions, tests as guards, and what may be written.
+
+use crate::base::Span;
+use crate::calculus::build;
+use crate::calculus::condition::{Place, Sense};
+use crate::calculus::draft::Draft;
+use crate::calculus::error::Error;
+use crate::calculus::frame::{AgentRef, Scope, Value};
+use crate::calculus::guard;
+use crate::calculus::system::{ActionList, ActionStep, Condition, Guard, Target};
+use crate::model::ir::{Action, ExprId, Type, TypeId, VarRef};
+
+/// Lowers a list of actions in a scope; the frame is put in by whoever owns the scope, when it is complete.
+pub fn actions(
+    draft: &mut Draft,
+    scope: &mut Scope,
+    actions: &[Action],
+    name: &str,
+) -> Result<ActionList, Error> {
+    let mut list = ActionList { steps: steps(draft, scope, actions, name)?, ..ActionList::default() };
+    collect_writes(&list.steps, &mut list.writes);
+    list.writes.sort_unstable();
+    list.writes.dedup();
+    Ok(list)
+}
+
+/// As deep as `if` is nested in the source.
+fn steps(
+    draft: &mut Draft,
+    scope: &mut Scope,
+    actions: &[Action],
+    name: &str,
+) -> Result<Vec<ActionStep>, Error> {
+    let mut steps = Vec::with_capacity(actions.len());
+    for action in actions {
+        steps.push(match action {
+            Action::Assign { agent, variable, value, span } => {
+                assign(draft, scope, *agent, *variable, *value, *span, name)?
+            }
+            Action::If { condition, then, otherwise } => ActionStep::If {
+                condition: test(draft, scope, *condition, name)?,
+                then: self::steps(draft, scope, then, name)?,
+                otherwise: self::steps(draft, scope, otherwise, name)?,
+            },
+            Action::Goto { participant, target, span } => {
+                ActionStep::Goto { slot: *participant, target: target.index(), span: *span }
+            }
+            Action::Stop { reason, span } => ActionStep::Stop { reason: reason.clone(), span: *span },
+        });
+    }
+    Ok(steps)
+}
+
+fn test(draft: &mut Draft, scope: &mut Scope, condition: ExprId, name: &str) -> Result<Guard, Error> {
+    guard::guard(draft, scope, Place::Claim, condition, Sense::Positive, &format!("{name} if"))
+}
+
+/// A boolean that is no number (it has a quantifier) is assigned by a choice between true and false.
+fn assign(
+    draft: &mut Draft,
+    scope: &mut Scope,
+    agent: ExprId,
+    variable: VarRef,
+    value: ExprId,
+    span: Span,
+    name: &str,
+) -> Result<ActionStep, Error> {
+    let slot = match build::value(draft, scope, Scope::TOP, agent)? {
+        Value::Agent(AgentRef::Slot(slot)) => slot,
+        Value::Agent(AgentRef::Link { .. } | AgentRef::Absent) | Value::Number(_) | Value::Delayed(..) => {
+            unreachable!("the model lets only self and participants be written")
+        }
+    };
+    let (target, written) = target(draft, scope, slot, variable);
+    let node = match build::number(draft, scope, Scope::TOP, value) {
+        Err(Error::QuantifierInNumber { .. }) if draft.model.exprs[value].ty == Type::Bool => {
+            let condition = test(draft, scope, value, name)?;
+            let outcomes =
+                if let Condition::Constant(known) = condition.condition { [known; 2] } else { [true, false] };
+            let [then, otherwise] = outcomes.map(|outcome| {
+                let node = draft.graph.number(f64::from(u8::from(outcome)));
+                let value = draft.function(|| outcome.to_string(), vec![node]);
+                vec![ActionStep::Assign { slot, target, value, span }]
+            });
+            return Ok(ActionStep::If { condition, then, otherwise });
+        }
+        node => node?,
+    };
+    let value = draft.function(|| format!("{name} {written}"), vec![node]);
+    Ok(ActionStep::Assign { slot, target, value, span })
+}
+
+/// The column that is written, and its name.
+fn target(draft: &Draft, scope: &Scope, slot: usize, variable: VarRef) -> (Target, String) {
+    let ty = scope.frame.slots[slot].ty();
+    let model = &draft.model.types[TypeId::new(ty)];
+    match variable {
+        VarRef::State(k) => (Target::State(k), model.states[k].name.clone()),
+        VarRef::Discrete(k) => (Target::Aux(draft.layout(ty).discrete(k)), model.discretes[k].name.clone()),
+        VarRef::Param(_) | VarRef::Link(_) | VarRef::Let(_) => {
+            unreachable!("the model lets only states and discretes be written")
+        }
+    }
+}
+
+fn collect_writes(steps: &[ActionStep], writes: &mut Vec<(usize, Target)>) {
+    for step in steps {
+        match step {
+            ActionStep::Assign { slot, target, .. } => writes.push((*slot, *target)),
+            ActionStep::Goto { slot, .. } => writes.push((*slot, Target::Mode)),
+            ActionStep::If { then, otherwise, .. } => {
+                collect_writes(then, writes);
+                collect_writes(otherwise, writes);
+            }
+            ActionStep::Stop { .. } => {}
+        }
+    }
+}

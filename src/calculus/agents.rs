@@ -1,0 +1,238 @@
+//! Agent types and interactions, part by part: modes, claims, transitions, lets.
+
+use crate::calculus::actions;
+use crate::calculus::build;
+use crate::calculus::condition::{Place, Sense};
+use crate::calculus::draft::Draft;
+use crate::calculus::error::Error;
+use crate::calculus::flow;
+use crate::calculus::frame::Scope;
+use crate::calculus::guard;
+use crate::calculus::symmetry;
+use crate::calculus::system::{
+    ActionList, AgentSystem, ClaimKind, ClaimSystem, Column, FunctionId, InteractionSystem, LetSystem,
+    LetValue, ModeSystem, PairTransition, TransitionSystem, Trigger,
+};
+use crate::model::ir::{
+    self, Action, Claim, ExprId, Interaction, Let, Mode, ModeId, Transition, Type, TypeId,
+};
+
+/// The names and places of all modes, which listings need before there are equations.
+pub fn mode_tree(draft: &mut Draft) {
+    for (id, ty) in draft.model.types.iter_enumerated() {
+        let modes = ty.modes.iter_enumerated().map(|(mode, declared)| ModeSystem {
+            name: declared.name.clone(),
+            path: declared.path.clone(),
+            parent: declared.parent.map(ModeId::index),
+            depth: declared.depth,
+            initial_leaf: initial_leaf(ty, mode).index(),
+            flow: None,
+            claims: Vec::new(),
+            entry: ActionList::default(),
+            exit: ActionList::default(),
+            transitions: Vec::new(),
+        });
+        draft.types[id.index()].modes = modes.collect();
+    }
+}
+
+fn initial_leaf(ty: &ir::AgentType, mut mode: ModeId) -> ModeId {
+    while let Some(child) = ty.modes[mode].initial {
+        mode = child;
+    }
+    mode
+}
+
+/// Flows of all leaves; then every type has as many locks as the leaf that needs most.
+pub fn flows(draft: &mut Draft) {
+    for (id, ty) in draft.model.types.iter_enumerated() {
+        for (mode, declared) in ty.modes.iter_enumerated().filter(|(_, mode)| mode.children.is_empty()) {
+            let name = mode_name(ty, declared);
+            let flow = flow::flow(draft, id, mode, &name);
+            let flow = draft.keep(flow);
+            let system = &mut draft.types[id.index()];
+            system.layout.n_locks =
+                system.layout.n_locks.max(flow.as_ref().map_or(0, |flow| flow.kinks.len()));
+            system.modes[mode.index()].flow = flow;
+        }
+    }
+}
+
+fn mode_name(ty: &ir::AgentType, mode: &Mode) -> String {
+    if mode.path.is_empty() { ty.name.clone() } else { format!("{}.{}", ty.name, mode.path) }
+}
+
+/// Invariants, asserts, entry and exit actions.
+pub fn modes(draft: &mut Draft) {
+    for (id, ty) in draft.model.types.iter_enumerated() {
+        for (mode, declared) in ty.modes.iter_enumerated() {
+            let name = mode_name(ty, declared);
+            let mut claims = Vec::new();
+            let invariants = declared.invariants.iter().map(|claim| (ClaimKind::Invariant, claim));
+            let asserts = declared.asserts.iter().map(|claim| (ClaimKind::Assert, claim));
+            for (kind, claim) in invariants.chain(asserts) {
+                let lowered = self::claim(draft, id, kind, claim, &name);
+                claims.extend(draft.keep(lowered));
+            }
+            let entry = own_actions(draft, id, &declared.entry, &format!("{name} entry"));
+            let exit = own_actions(draft, id, &declared.exit, &format!("{name} exit"));
+            let system = &mut draft.types[id.index()].modes[mode.index()];
+            (system.claims, system.entry, system.exit) = (claims, entry, exit);
+        }
+    }
+}
+
+fn claim(
+    draft: &mut Draft,
+    ty: TypeId,
+    kind: ClaimKind,
+    claim: &Claim,
+    name: &str,
+) -> Result<ClaimSystem, Error> {
+    let mut scope = Scope::of_self(ty);
+    let word = match kind {
+        ClaimKind::Invariant => "invariant",
+        ClaimKind::Assert => "assert",
+    };
+    let name = format!("{name} {word}");
+    let violation = guard::guard(draft, &mut scope, Place::Claim, claim.condition, Sense::Negative, &name)?;
+    Ok(ClaimSystem { kind, frame: scope.frame, violation, message: claim.message.clone(), span: claim.span })
+}
+
+/// Entry or exit actions, which have a frame of their own.
+fn own_actions(draft: &mut Draft, ty: TypeId, steps: &[Action], name: &str) -> ActionList {
+    let mut scope = Scope::of_self(ty);
+    let list = actions::actions(draft, &mut scope, steps, name);
+    let list = draft.keep(list).unwrap_or_default();
+    ActionList { frame: scope.frame, ..list }
+}
+
+/// Transitions of agents.
+pub fn transitions(draft: &mut Draft) {
+    for (id, ty) in draft.model.types.iter_enumerated() {
+        for declared in &ty.transitions {
+            let scope = Scope::of_self(id);
+            let depth = ty.modes[declared.source].depth;
+            let lowered = transition(draft, scope, declared, depth);
+            let Some(lowered) = draft.keep(lowered) else { continue };
+            let system = &mut draft.types[id.index()];
+            system.modes[declared.source.index()].transitions.push(system.transitions.len());
+            system.transitions.push(lowered);
+        }
+    }
+}
+
+/// Interactions and whether they are symmetric.
+pub fn interactions(draft: &mut Draft) -> Vec<InteractionSystem> {
+    let model = draft.model;
+    model.interactions.iter().map(|declared| interaction(draft, declared)).collect()
+}
+
+fn interaction(draft: &mut Draft, declared: &Interaction) -> InteractionSystem {
+    let [a, b] = &declared.participants;
+    let mut transitions = Vec::new();
+    for step in &declared.transitions {
+        let scope = Scope::new(vec![(a.clone(), declared.types[0]), (b.clone(), declared.types[1])]);
+        let lowered = transition(draft, scope, step, 0);
+        let Some(transition) = draft.keep(lowered) else { continue };
+        let symmetric = declared.types[0] == declared.types[1] && symmetry::symmetric(draft, &transition);
+        transitions.push(PairTransition { transition, symmetric });
+    }
+    InteractionSystem { name: declared.name.clone(), types: declared.types.map(TypeId::index), transitions }
+}
+
+fn transition(
+    draft: &mut Draft,
+    mut scope: Scope,
+    declared: &Transition,
+    depth: usize,
+) -> Result<TransitionSystem, Error> {
+    let label = &declared.label;
+    let trigger = trigger(draft, &mut scope, &declared.trigger, label)?;
+    let priority = match declared.priority {
+        Some(expr) => Some(number(draft, &mut scope, expr, &format!("{label} priority"))?),
+        None => None,
+    };
+    let mut actions = actions::actions(draft, &mut scope, &declared.actions, label)?;
+    let witnesses =
+        declared.witnesses.iter().filter_map(|binder| scope.witnesses.get(binder).copied()).collect();
+    let frame = scope.frame;
+    actions.frame = frame.clone();
+    Ok(TransitionSystem {
+        label: label.clone(),
+        source: declared.source.index(),
+        depth,
+        declaration: 0,
+        priority,
+        trigger,
+        target: declared.target.map(ModeId::index),
+        actions,
+        frame,
+        witnesses,
+        span: declared.span,
+    })
+}
+
+fn trigger(
+    draft: &mut Draft,
+    scope: &mut Scope,
+    trigger: &ir::Trigger,
+    label: &str,
+) -> Result<Trigger, Error> {
+    let name = format!("{label} guard");
+    let guard = |draft: &mut Draft, scope: &mut Scope, guard: ExprId| {
+        guard::guard(draft, scope, Place::Guard, guard, Sense::Positive, &name)
+    };
+    Ok(match *trigger {
+        ir::Trigger::When(condition) => Trigger::When(guard(draft, scope, condition)?),
+        ir::Trigger::After(delay, condition) => Trigger::After {
+            delay: number(draft, scope, delay, &format!("{label} delay"))?,
+            guard: condition.map(|condition| guard(draft, scope, condition)).transpose()?,
+        },
+        ir::Trigger::Every(period, condition) => Trigger::Every {
+            period: number(draft, scope, period, &format!("{label} period"))?,
+            guard: condition.map(|condition| guard(draft, scope, condition)).transpose()?,
+        },
+    })
+}
+
+fn number(draft: &mut Draft, scope: &mut Scope, expr: ExprId, name: &str) -> Result<FunctionId, Error> {
+    let node = build::number(draft, scope, Scope::TOP, expr)?;
+    Ok(draft.function(|| name.to_owned(), vec![node]))
+}
+
+/// Numbers all transitions in the order in which they stand in the source.
+pub fn number_declarations(types: &mut [AgentSystem], interactions: &mut [InteractionSystem]) {
+    let own = types.iter_mut().flat_map(|ty| &mut ty.transitions);
+    let pairs = interactions.iter_mut().flat_map(|i| &mut i.transitions).map(|pair| &mut pair.transition);
+    let mut all: Vec<&mut TransitionSystem> = own.chain(pairs).collect();
+    all.sort_by_key(|transition| (transition.span.file, transition.span.start));
+    for (number, transition) in all.into_iter().enumerate() {
+        transition.declaration = number;
+    }
+}
+
+/// Lets, for recording.
+pub fn lets(draft: &mut Draft) {
+    for (id, ty) in draft.model.types.iter_enumerated() {
+        let mut lets = Vec::with_capacity(ty.lets.len());
+        for declared in &ty.lets {
+            let lowered = recorded(draft, id, declared, &format!("{}.{}", ty.name, declared.name));
+            lets.extend(draft.keep(lowered));
+        }
+        draft.types[id.index()].lets = lets;
+    }
+}
+
+fn recorded(draft: &mut Draft, ty: TypeId, declared: &Let, name: &str) -> Result<LetSystem, Error> {
+    let mut scope = Scope::of_self(ty);
+    let boolean = draft.model.exprs[declared.value].ty == Type::Bool;
+    let value = if boolean {
+        let place = Place::Claim;
+        LetValue::Condition(guard::guard(draft, &mut scope, place, declared.value, Sense::Positive, name)?)
+    } else {
+        LetValue::Number(number(draft, &mut scope, declared.value, name)?)
+    };
+    let column = Column { name: declared.name.clone(), factor: declared.factor, boolean };
+    Ok(LetSystem { column, mode: declared.mode.index(), frame: scope.frame, value })
+}

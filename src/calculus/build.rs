@@ -1,0 +1,355 @@
+//! Lowering of numbers: expressions of the model to nodes, with functions and lets put in.
+//!
+//! A loop with an explicit stack, because a sum of 100 000 terms is a chain of that depth. What an expression means in
+//! an environment is remembered, so that what is shared in the model is shared in the graph.
+
+use rustc_hash::FxHashSet;
+
+use crate::base::Span;
+use crate::calculus::draft::Draft;
+use crate::calculus::error::Error;
+use crate::calculus::frame::{AgentRef, Env, EnvId, Scope, Value};
+use crate::calculus::graph::{Node, NodeId};
+use crate::calculus::system::{Layout, Slot};
+use crate::math::Op;
+use crate::model::ir::{ExprId, ExprKind, FunctionId, Mode, ModeId, Type, TypeId};
+
+/// Why an expression cannot be lowered at once.
+enum Wait {
+    /// Another one comes first.
+    For(EnvId, ExprId),
+    /// It cannot be lowered.
+    Failed(Error),
+}
+
+impl From<Error> for Wait {
+    fn from(error: Error) -> Self {
+        Wait::Failed(error)
+    }
+}
+
+/// Lowers a number or a boolean without quantifiers.
+pub fn number(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> Result<NodeId, Error> {
+    match value(draft, scope, env, expr)? {
+        Value::Number(node) => Ok(node),
+        Value::Agent(_) | Value::Delayed(..) => unreachable!("the model is typed"),
+    }
+}
+
+/// Lowers any expression without quantifiers.
+pub fn value(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> Result<Value, Error> {
+    let mut stack = vec![(env, expr)];
+    let mut waiting: FxHashSet<(EnvId, ExprId)> = stack.iter().copied().collect();
+    while let Some(&(env, expr)) = stack.last() {
+        if !scope.memo.contains_key(&(env, expr)) {
+            match step(draft, scope, env, expr) {
+                Ok(value) => {
+                    if let Value::Number(node) = value {
+                        scope.spans.entry(node).or_insert(draft.model.exprs[expr].span);
+                    }
+                    scope.memo.insert((env, expr), value);
+                }
+                Err(Wait::For(inner_env, inner)) => {
+                    if !waiting.insert((inner_env, inner)) {
+                        return Err(Error::RateCircle { span: draft.model.exprs[inner].span });
+                    }
+                    stack.push((inner_env, inner));
+                    continue;
+                }
+                Err(Wait::Failed(error)) => return Err(error),
+            }
+        }
+        waiting.remove(&(env, expr));
+        stack.pop();
+    }
+    Ok(scope.memo[&(env, expr)])
+}
+
+/// Lowers one expression whose operands are known.
+fn step(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> Result<Value, Wait> {
+    let model = draft.model;
+    let expr = &model.exprs[expr];
+    let span = expr.span;
+    let node = match &expr.kind {
+        ExprKind::Number(x) => draft.graph.number(*x),
+        ExprKind::Time => draft.graph.intern(Node::Time),
+        ExprKind::Local(k) => match scope.env_of(env).locals[*k] {
+            Value::Delayed(outer, argument) => return need(scope, outer, argument),
+            value @ (Value::Number(_) | Value::Agent(_)) => return Ok(value),
+        },
+        ExprKind::SelfAgent => return Ok(Value::Agent(AgentRef::Slot(scope.env_of(env).this))),
+        ExprKind::Participant(k) => return Ok(Value::Agent(AgentRef::Slot(*k))),
+        ExprKind::Bound(binder) => {
+            let inner =
+                scope.env_of(env).bound.iter().rev().find(|(b, _)| b == binder).map(|&(_, slot)| slot);
+            let slot = inner.or_else(|| scope.witnesses.get(binder).copied());
+            return Ok(Value::Agent(AgentRef::Slot(slot.expect("the model resolves bound names"))));
+        }
+        ExprKind::NoAgent => return Ok(Value::Agent(AgentRef::Absent)),
+        ExprKind::Link(agent, link) => {
+            let agent = need_agent(scope, env, *agent)?;
+            let slot = scope.slot(model, agent, span)?;
+            let target = slot.map_or(AgentRef::Absent, |from| AgentRef::Link { from, link: *link });
+            return Ok(Value::Agent(target));
+        }
+        ExprKind::State(agent, k) => column(draft, scope, env, *agent, span, |_, slot| state(slot, *k))?,
+        ExprKind::Rate(agent, k) => return rate(draft, scope, env, *agent, *k, span),
+        ExprKind::Discrete(agent, k) => {
+            column(draft, scope, env, *agent, span, |layout, slot| aux(slot, layout.discrete(*k)))?
+        }
+        ExprKind::AgentParam(agent, k) => {
+            column(draft, scope, env, *agent, span, |layout, slot| aux(slot, layout.param(*k)))?
+        }
+        ExprKind::Let(agent, k) => match let_env(draft, scope, env, *agent, *k, span)? {
+            Some((inner, body)) => return need(scope, inner, body),
+            None => draft.graph.number(f64::NAN),
+        },
+        ExprKind::Apply(op, operands) => {
+            if matches!(expr.ty, Type::Agent(_) | Type::Link(_)) {
+                return choice(draft, scope, env, operands, span);
+            }
+            let nodes =
+                operands.iter().map(|&e| need_number(scope, env, e)).collect::<Result<Vec<_>, _>>()?;
+            draft.graph.apply(*op, &nodes)
+        }
+        ExprKind::Call(function, arguments) => {
+            let values = arguments
+                .iter()
+                .map(|&argument| match model.exprs[argument].ty {
+                    Type::Bool => Ok(Value::Delayed(env, argument)),
+                    Type::Real | Type::Int | Type::Agent(_) | Type::Link(_) => need(scope, env, argument),
+                })
+                .collect::<Result<Vec<_>, _>>()?;
+            let inner = call_env(scope, env, values);
+            return need(scope, inner, model.functions[*function].body);
+        }
+        ExprKind::Present(agent) => {
+            let agent = need_agent(scope, env, *agent)?;
+            present(draft, scope, agent)
+        }
+        ExprKind::Same(a, b) => {
+            let agents = [need_agent(scope, env, *a)?, need_agent(scope, env, *b)?];
+            let [a, b] = agents.map(|agent| agent_number(draft, scope, agent));
+            draft.graph.binary(Op::Eq, a, b)
+        }
+        ExprKind::Is(agent, mode) => {
+            let agent = need_agent(scope, env, *agent)?;
+            match scope.slot(model, agent, span)? {
+                Some(slot) => in_mode(draft, scope, slot, *mode),
+                None => draft.graph.number(0.0),
+            }
+        }
+        ExprKind::Quantifier { .. } => return Err(Error::QuantifierInNumber { span }.into()),
+        ExprKind::Rising(_) => return Err(Error::EventOutsideGuard { word: "rising", span }.into()),
+        ExprKind::Crossing(_) => return Err(Error::EventOutsideGuard { word: "crossing", span }.into()),
+    };
+    Ok(Value::Number(node))
+}
+
+fn need(scope: &Scope, env: EnvId, expr: ExprId) -> Result<Value, Wait> {
+    scope.memo.get(&(env, expr)).copied().ok_or(Wait::For(env, expr))
+}
+
+fn need_number(scope: &Scope, env: EnvId, expr: ExprId) -> Result<NodeId, Wait> {
+    match need(scope, env, expr)? {
+        Value::Number(node) => Ok(node),
+        Value::Agent(_) | Value::Delayed(..) => unreachable!("the model is typed"),
+    }
+}
+
+fn need_agent(scope: &Scope, env: EnvId, expr: ExprId) -> Result<AgentRef, Wait> {
+    match need(scope, env, expr)? {
+        Value::Agent(agent) => Ok(agent),
+        Value::Number(_) | Value::Delayed(..) => unreachable!("the model is typed"),
+    }
+}
+
+fn state(slot: usize, column: usize) -> Node {
+    Node::State { slot: slot as u32, column: column as u32 }
+}
+
+fn aux(slot: usize, column: usize) -> Node {
+    Node::Aux { slot: slot as u32, column: column as u32 }
+}
+
+/// A column of an agent; NaN of `none`. A boolean read through a link is true only if it is 1, not if it is NaN.
+fn column(
+    draft: &mut Draft,
+    scope: &mut Scope,
+    env: EnvId,
+    agent: ExprId,
+    span: Span,
+    leaf: impl Fn(&Layout, usize) -> Node,
+) -> Result<NodeId, Wait> {
+    let agent = need_agent(scope, env, agent)?;
+    let Some(slot) = scope.slot(draft.model, agent, span)? else { return Ok(draft.graph.number(f64::NAN)) };
+    let ty = scope.frame.slots[slot].ty();
+    let node = leaf(draft.layout(ty), slot);
+    let id = draft.graph.intern(node);
+    Ok(if matches!(scope.frame.slots[slot], Slot::Link { .. }) && is_boolean_column(draft, ty, node) {
+        let one = draft.graph.number(1.0);
+        draft.graph.binary(Op::Eq, id, one)
+    } else {
+        id
+    })
+}
+
+fn is_boolean_column(draft: &Draft, ty: usize, node: Node) -> bool {
+    let Node::Aux { column, .. } = node else { return false };
+    let (ty, column) = (&draft.types[ty], column as usize);
+    let params = ty.params.iter().enumerate().map(|(k, c)| (ty.layout.param(k), c));
+    let discretes = ty.discretes.iter().enumerate().map(|(k, c)| (ty.layout.discrete(k), c));
+    params.chain(discretes).any(|(at, c)| at == column && c.boolean)
+}
+
+/// `x'`: in the flow itself the equation of self, elsewhere what the runtime says.
+fn rate(
+    draft: &mut Draft,
+    scope: &mut Scope,
+    env: EnvId,
+    agent: ExprId,
+    k: usize,
+    span: Span,
+) -> Result<Value, Wait> {
+    let agent = need_agent(scope, env, agent)?;
+    let Some(slot) = scope.slot(draft.model, agent, span)? else {
+        return Ok(Value::Number(draft.graph.number(f64::NAN)));
+    };
+    match &scope.equations {
+        Some(equations) if slot == 0 => need(scope, Scope::TOP, equations[k]),
+        Some(_) => Err(Error::ForeignRate { span }.into()),
+        None => Ok(Value::Number(draft.graph.intern(Node::Rate { slot: slot as u32, column: k as u32 }))),
+    }
+}
+
+/// Environment and body of a let of an agent; none for one of `none`.
+fn let_env(
+    draft: &Draft,
+    scope: &mut Scope,
+    env: EnvId,
+    agent: ExprId,
+    k: usize,
+    span: Span,
+) -> Result<Option<(EnvId, ExprId)>, Wait> {
+    let agent = need_agent(scope, env, agent)?;
+    Ok(open_let(draft, scope, agent, k, span)?)
+}
+
+/// Environment and body of let `k` of an agent; none for one of `none`.
+pub fn open_let(
+    draft: &Draft,
+    scope: &mut Scope,
+    agent: AgentRef,
+    k: usize,
+    span: Span,
+) -> Result<Option<(EnvId, ExprId)>, Error> {
+    let Some(this) = scope.slot(draft.model, agent, span)? else { return Ok(None) };
+    let ty = TypeId::new(scope.frame.slots[this].ty());
+    // For self the let is text of the same place as the guard that names it.
+    let inner = scope.env(Env { this, ..Env::default() });
+    Ok(Some((inner, draft.model.types[ty].lets[k].value)))
+}
+
+/// The environment of a function's body.
+fn call_env(scope: &mut Scope, env: EnvId, locals: Vec<Value>) -> EnvId {
+    let this = scope.env_of(env).this;
+    scope.env(Env { this, locals, bound: Vec::new() })
+}
+
+/// The body of a function and the environment of a call of it, for conditions.
+pub fn open_call(
+    draft: &mut Draft,
+    scope: &mut Scope,
+    env: EnvId,
+    function: FunctionId,
+    arguments: &[ExprId],
+) -> Result<(EnvId, ExprId), Error> {
+    let model = draft.model;
+    let mut values = Vec::with_capacity(arguments.len());
+    for &argument in arguments {
+        values.push(match model.exprs[argument].ty {
+            Type::Bool => Value::Delayed(env, argument),
+            Type::Real | Type::Int | Type::Agent(_) | Type::Link(_) => value(draft, scope, env, argument)?,
+        });
+    }
+    Ok((call_env(scope, env, values), model.functions[function].body))
+}
+
+/// Whether an agent is there.
+fn present(draft: &mut Draft, scope: &Scope, agent: AgentRef) -> NodeId {
+    match agent {
+        AgentRef::Absent => draft.graph.number(0.0),
+        AgentRef::Slot(slot) => match scope.frame.slots[slot] {
+            Slot::Root { .. } => draft.graph.number(1.0),
+            Slot::Link { from, link, .. } => present(draft, scope, AgentRef::Link { from, link }),
+        },
+        AgentRef::Link { .. } => {
+            let zero = draft.graph.number(0.0);
+            let number = agent_number(draft, scope, agent);
+            draft.graph.binary(Op::Le, zero, number)
+        }
+    }
+}
+
+/// The number of an agent, -1 for none.
+fn agent_number(draft: &mut Draft, scope: &Scope, agent: AgentRef) -> NodeId {
+    match agent {
+        AgentRef::Absent => draft.graph.number(-1.0),
+        AgentRef::Slot(slot) => match scope.frame.slots[slot] {
+            Slot::Root { .. } => draft.graph.intern(aux(slot, Layout::NUMBER)),
+            Slot::Link { from, link, .. } => agent_number(draft, scope, AgentRef::Link { from, link }),
+        },
+        AgentRef::Link { from, link } => {
+            let layout = draft.layout(scope.frame.slots[from].ty());
+            let column = layout.link(link);
+            draft.graph.intern(aux(from, column))
+        }
+    }
+}
+
+/// Whether the agent in a slot is in a mode or inside it.
+fn in_mode(draft: &mut Draft, scope: &Scope, slot: usize, mode: ModeId) -> NodeId {
+    let modes = &draft.model.types[TypeId::new(scope.frame.slots[slot].ty())].modes;
+    let inside = |mut leaf: ModeId| loop {
+        if leaf == mode {
+            return true;
+        }
+        match modes[leaf].parent {
+            Some(parent) => leaf = parent,
+            None => return false,
+        }
+    };
+    let is_leaf = |m: &Mode| m.children.is_empty();
+    let leaves: Vec<usize> = modes
+        .iter_enumerated()
+        .filter(|(id, m)| is_leaf(m) && inside(*id))
+        .map(|(id, _)| id.index())
+        .collect();
+    let present = draft.graph.intern(aux(slot, Layout::MODE));
+    let mut any = draft.graph.number(0.0);
+    for leaf in leaves {
+        let leaf = draft.graph.number(leaf as f64);
+        let here = draft.graph.binary(Op::Eq, present, leaf);
+        any = draft.graph.binary(Op::Or, any, here);
+    }
+    any
+}
+
+/// `if c then lead else other`, where c is the same in every run.
+fn choice(
+    draft: &mut Draft,
+    scope: &mut Scope,
+    env: EnvId,
+    operands: &[ExprId],
+    span: Span,
+) -> Result<Value, Wait> {
+    let &[condition, a, b] = operands else { unreachable!("only `if` chooses between agents") };
+    let condition = need_number(scope, env, condition)?;
+    match draft.graph.constant(condition) {
+        Some(c) => need(scope, env, if c != 0.0 { a } else { b }),
+        None => {
+            let (a, b) = (need_agent(scope, env, a)?, need_agent(scope, env, b)?);
+            if a == b { Ok(Value::Agent(a)) } else { Err(Error::ChoiceOfAgents { span }.into()) }
+        }
+    }
+}

@@ -1,0 +1,460 @@
+//! Conditions: boolean expressions of the model in negation normal form, their comparisons as smooth atoms.
+//!
+//! `not` is pushed down to the comparisons: `not (a <= b)` is `b < a`. `a <= b` is the atom `a - b <= 0`. What reads no
+//! state, rate or time is a discrete test, and the tests of one `and` or `or` are merged into one. A comparison with an
+//! agent that is not there is false, and so is its negation. Distances are compared by their squares, whose rates are
+//! regular. What comes out is a [`Cond`], a tree over nodes; `guard` numbers its atoms.
+
+use crate::base::Span;
+use crate::calculus::build;
+use crate::calculus::draft::Draft;
+use crate::calculus::error::Error;
+use crate::calculus::frame::{AgentRef, EnvId, Scope, Value};
+use crate::calculus::graph::{Node, NodeId};
+use crate::calculus::system::{Relation, Slot};
+use crate::math::Op;
+use crate::model::ir::{ExprId, ExprKind, Quantifier, Type};
+
+/// How many comparisons and tests one condition may have (HY0308).
+pub const PARTS_MAX: usize = 10_000;
+/// How deep `if`, quantifiers, lets and functions of a condition may be nested (HY0309).
+pub const DEPTH_MAX: usize = 500;
+
+/// A condition over nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cond {
+    /// Always or never.
+    Constant(bool),
+    /// Not 0; changes at events only.
+    Discrete(NodeId),
+    /// `g relation 0`.
+    Atom(Relation, NodeId, Span),
+    /// All.
+    And(Vec<Cond>),
+    /// Any.
+    Or(Vec<Cond>),
+    /// A quantifier: its kind, the slot it binds, the type, without self, and what is to hold.
+    Quantified(Quantifier, Range, Box<Cond>),
+    /// `rising(c)`.
+    Rising(Box<Cond>),
+}
+
+/// What a quantifier ranges over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// The slot it binds.
+    pub slot: usize,
+    /// The type.
+    pub ty: usize,
+    /// Without self.
+    pub other: bool,
+}
+
+/// Where a condition stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In the guard of a transition, where `rising` and `crossing` have a meaning.
+    Guard,
+    /// Elsewhere.
+    Claim,
+}
+
+/// Whether a condition or its negation is lowered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sense {
+    /// As written.
+    Positive,
+    /// Its negation.
+    Negative,
+}
+
+impl Sense {
+    fn opposite(self) -> Self {
+        match self {
+            Sense::Positive => Sense::Negative,
+            Sense::Negative => Sense::Positive,
+        }
+    }
+}
+
+/// Lowers a boolean expression.
+pub fn lower(
+    draft: &mut Draft,
+    scope: &mut Scope,
+    place: Place,
+    expr: ExprId,
+    sense: Sense,
+) -> Result<Cond, Error> {
+    Lowering { draft, scope, place, parts: 0, depth: 0, quantifiers: 0 }.lower(Scope::TOP, expr, sense)
+}
+
+struct Lowering<'d, 'm> {
+    draft: &'d mut Draft<'m>,
+    scope: &'d mut Scope,
+    place: Place,
+    parts: usize,
+    depth: usize,
+    quantifiers: usize,
+}
+
+impl Lowering<'_, '_> {
+    fn lower(&mut self, env: EnvId, expr: ExprId, sense: Sense) -> Result<Cond, Error> {
+        let span = self.draft.model.exprs[expr].span;
+        self.depth += 1;
+        if self.depth > DEPTH_MAX {
+            return Err(Error::ConditionTooDeep { limit: DEPTH_MAX, span });
+        }
+        let result = self.lower_here(env, expr, sense);
+        self.depth -= 1;
+        result
+    }
+
+    fn lower_here(&mut self, mut env: EnvId, mut expr: ExprId, mut sense: Sense) -> Result<Cond, Error> {
+        let model = self.draft.model;
+        loop {
+            let span = model.exprs[expr].span;
+            match &model.exprs[expr].kind {
+                ExprKind::Apply(Op::Not, operands) => {
+                    expr = operands[0];
+                    sense = sense.opposite();
+                }
+                ExprKind::Apply(op @ (Op::And | Op::Or), _) => return self.junction(env, expr, *op, sense),
+                ExprKind::Apply(Op::Select, operands) => return self.choice(env, operands, sense),
+                ExprKind::Apply(op @ (Op::Lt | Op::Le | Op::Eq | Op::Ne), operands) => {
+                    return self.comparison(env, *op, [operands[0], operands[1]], sense, span);
+                }
+                ExprKind::Local(k) => match self.scope.env_of(env).locals[*k] {
+                    Value::Delayed(outer, argument) => (env, expr) = (outer, argument),
+                    Value::Number(node) => return self.test(node, sense, span),
+                    Value::Agent(_) => unreachable!("the model is typed"),
+                },
+                ExprKind::Call(function, arguments) => {
+                    let (inner, body) = build::open_call(self.draft, self.scope, env, *function, arguments)?;
+                    return self.lower(inner, body, sense);
+                }
+                ExprKind::Let(agent, k) => {
+                    let agent = self.agent(env, *agent)?;
+                    return match build::open_let(self.draft, self.scope, agent, *k, span)? {
+                        Some((inner, body)) => self.lower(inner, body, sense),
+                        None => Ok(Cond::Constant(false)),
+                    };
+                }
+                ExprKind::Quantifier { .. } => return self.quantifier(env, expr, sense),
+                ExprKind::Rising(condition) => return self.rising(env, *condition, sense, span),
+                ExprKind::Crossing(e) => return self.crossing(env, *e, sense, span),
+                ExprKind::Number(_)
+                | ExprKind::Discrete(..)
+                | ExprKind::AgentParam(..)
+                | ExprKind::Present(_)
+                | ExprKind::Same(..)
+                | ExprKind::Is(..)
+                | ExprKind::Apply(..)
+                | ExprKind::Time
+                | ExprKind::SelfAgent
+                | ExprKind::Participant(_)
+                | ExprKind::Bound(_)
+                | ExprKind::NoAgent
+                | ExprKind::Link(..)
+                | ExprKind::State(..)
+                | ExprKind::Rate(..) => {
+                    let node = self.number(env, expr)?;
+                    return self.test(node, sense, span);
+                }
+            }
+        }
+    }
+
+    fn number(&mut self, env: EnvId, expr: ExprId) -> Result<NodeId, Error> {
+        build::number(self.draft, self.scope, env, expr)
+    }
+
+    fn agent(&mut self, env: EnvId, expr: ExprId) -> Result<AgentRef, Error> {
+        match build::value(self.draft, self.scope, env, expr)? {
+            Value::Agent(agent) => Ok(agent),
+            Value::Number(_) | Value::Delayed(..) => unreachable!("the model is typed"),
+        }
+    }
+
+    /// `and` and `or`; chains are lists here, however long.
+    fn junction(&mut self, env: EnvId, expr: ExprId, op: Op, sense: Sense) -> Result<Cond, Error> {
+        let model = self.draft.model;
+        let (mut terms, mut pending) = (Vec::new(), vec![expr]);
+        while let Some(next) = pending.pop() {
+            match &model.exprs[next].kind {
+                ExprKind::Apply(inner, operands) if *inner == op => pending.extend(operands.iter().rev()),
+                _ => terms.push(self.lower(env, next, sense)?),
+            }
+        }
+        let all = (op == Op::And) == (sense == Sense::Positive);
+        Ok(self.join(if all { Op::And } else { Op::Or }, terms))
+    }
+
+    /// `and` or `or` of conditions: nested ones opened, constants applied, discrete tests merged and put first.
+    fn join(&mut self, op: Op, terms: Vec<Cond>) -> Cond {
+        let neutral = op == Op::And;
+        let (mut discrete, mut rest): (Option<NodeId>, Vec<Cond>) = (None, Vec::new());
+        let flat = terms.into_iter().flat_map(|term| match (term, op) {
+            (Cond::And(inner), Op::And) | (Cond::Or(inner), Op::Or) => inner,
+            (term, _) => vec![term],
+        });
+        for term in flat {
+            match term {
+                Cond::Constant(value) if value == neutral => {}
+                Cond::Constant(value) => return Cond::Constant(value),
+                Cond::Discrete(node) => {
+                    discrete =
+                        Some(discrete.map_or(node, |before| self.draft.graph.binary(op, before, node)));
+                }
+                term if rest.contains(&term) && rest.len() < 100 => {}
+                term => rest.push(term),
+            }
+        }
+        let mut all: Vec<Cond> = Vec::with_capacity(rest.len() + 1);
+        if let Some(node) = discrete {
+            match self.draft.graph.constant(node) {
+                Some(value) if (value != 0.0) == neutral => {}
+                Some(_) => return Cond::Constant(!neutral),
+                None => all.push(Cond::Discrete(node)),
+            }
+        }
+        all.append(&mut rest);
+        match (all.len(), op) {
+            (0, _) => Cond::Constant(neutral),
+            (1, _) => all.remove(0),
+            (_, Op::And) => Cond::And(all),
+            _ => Cond::Or(all),
+        }
+    }
+
+    /// `if c then p else q` of booleans: `c and p or not c and q`.
+    fn choice(&mut self, env: EnvId, operands: &[ExprId], sense: Sense) -> Result<Cond, Error> {
+        let holds = self.lower(env, operands[0], Sense::Positive)?;
+        if let Cond::Constant(value) = holds {
+            return self.lower(env, operands[if value { 1 } else { 2 }], sense);
+        }
+        let fails = self.lower(env, operands[0], Sense::Negative)?;
+        let (then, otherwise) = (self.lower(env, operands[1], sense)?, self.lower(env, operands[2], sense)?);
+        Ok(self.either(holds, fails, then, otherwise))
+    }
+
+    fn either(&mut self, holds: Cond, fails: Cond, then: Cond, otherwise: Cond) -> Cond {
+        let first = self.join(Op::And, vec![holds, then]);
+        let second = self.join(Op::And, vec![fails, otherwise]);
+        self.join(Op::Or, vec![first, second])
+    }
+
+    fn quantifier(&mut self, env: EnvId, expr: ExprId, sense: Sense) -> Result<Cond, Error> {
+        let model = self.draft.model;
+        let span = model.exprs[expr].span;
+        let ExprKind::Quantifier { kind, binder, set, other, filter, body } = &model.exprs[expr].kind else {
+            unreachable!("called for quantifiers only")
+        };
+        let slot = self.scope.bind(model.binders[*binder].name.clone(), *set, span)?;
+        if env == Scope::TOP && self.quantifiers == 0 {
+            self.scope.witnesses.insert(*binder, slot);
+        }
+        let inner = self.scope.bound_env(env, *binder, slot);
+        let kind = match (kind, sense) {
+            (Quantifier::Exists, Sense::Positive) | (Quantifier::Forall, Sense::Negative) => {
+                Quantifier::Exists
+            }
+            (Quantifier::Forall, Sense::Positive) | (Quantifier::Exists, Sense::Negative) => {
+                Quantifier::Forall
+            }
+        };
+        self.quantifiers += 1;
+        let (filter_sense, op) = match kind {
+            Quantifier::Exists => (Sense::Positive, Op::And),
+            Quantifier::Forall => (Sense::Negative, Op::Or),
+        };
+        let mut terms = Vec::new();
+        if let Some(filter) = filter {
+            terms.push(self.lower(inner, *filter, filter_sense)?);
+        }
+        terms.push(self.lower(inner, *body, sense)?);
+        self.quantifiers -= 1;
+        let body = self.join(op, terms);
+        Ok(match (kind, &body) {
+            (Quantifier::Exists, Cond::Constant(false)) | (Quantifier::Forall, Cond::Constant(true)) => body,
+            _ => {
+                let range = Range { slot, ty: set.index(), other: *other };
+                Cond::Quantified(kind, range, Box::new(body))
+            }
+        })
+    }
+
+    fn rising(&mut self, env: EnvId, condition: ExprId, sense: Sense, span: Span) -> Result<Cond, Error> {
+        self.event_allowed("rising", sense, span)?;
+        if self.quantifiers > 0 {
+            return Err(Error::RisingQuantified { span });
+        }
+        Ok(Cond::Rising(Box::new(self.lower(env, condition, Sense::Positive)?)))
+    }
+
+    fn crossing(&mut self, env: EnvId, e: ExprId, sense: Sense, span: Span) -> Result<Cond, Error> {
+        self.event_allowed("crossing", sense, span)?;
+        let g = self.number(env, e)?;
+        self.atom(Relation::Crossing, g, span)
+    }
+
+    fn event_allowed(&self, word: &'static str, sense: Sense, span: Span) -> Result<(), Error> {
+        match (self.place, sense) {
+            (Place::Claim, _) => Err(Error::EventOutsideGuard { word, span }),
+            (Place::Guard, Sense::Negative) => Err(Error::EventNegated { word, span }),
+            (Place::Guard, Sense::Positive) => Ok(()),
+        }
+    }
+
+    fn comparison(
+        &mut self,
+        env: EnvId,
+        op: Op,
+        [a, b]: [ExprId; 2],
+        sense: Sense,
+        span: Span,
+    ) -> Result<Cond, Error> {
+        let equality = matches!(op, Op::Eq | Op::Ne);
+        if equality && self.draft.model.exprs[a].ty == Type::Bool {
+            let same = (op == Op::Eq) == (sense == Sense::Positive);
+            let (holds, fails) = (self.lower(env, a, Sense::Positive)?, self.lower(env, a, Sense::Negative)?);
+            let (then, otherwise) =
+                (self.lower(env, b, Sense::Positive)?, self.lower(env, b, Sense::Negative)?);
+            return Ok(if same {
+                self.either(holds, fails, then, otherwise)
+            } else {
+                self.either(holds, fails, otherwise, then)
+            });
+        }
+        let (a, b) = (self.number(env, a)?, self.number(env, b)?);
+        if equality {
+            return self.equality((op == Op::Eq) == (sense == Sense::Positive), a, b, span);
+        }
+        match (op, sense) {
+            (Op::Le, Sense::Positive) => self.less(Relation::NonPositive, a, b, span),
+            (Op::Le, Sense::Negative) => self.less(Relation::Negative, b, a, span),
+            (_, Sense::Positive) => self.less(Relation::Negative, a, b, span),
+            (_, Sense::Negative) => self.less(Relation::NonPositive, b, a, span),
+        }
+    }
+
+    /// `a == b` or `a != b` of numbers; the model allows reals only where both are discrete.
+    fn equality(&mut self, same: bool, a: NodeId, b: NodeId, span: Span) -> Result<Cond, Error> {
+        let moving = self.draft.graph.moves(a) || self.draft.graph.moves(b);
+        if same && !moving {
+            let node = self.draft.graph.binary(Op::Eq, a, b);
+            return self.test(node, Sense::Positive, span);
+        }
+        if !same && !moving && !self.reads_links(a) && !self.reads_links(b) {
+            let node = self.draft.graph.binary(Op::Ne, a, b);
+            return self.test(node, Sense::Positive, span);
+        }
+        // Two comparisons, of which an agent that is not there makes neither true.
+        let relation = if same { Relation::NonPositive } else { Relation::Negative };
+        let (below, above) = (self.less(relation, a, b, span)?, self.less(relation, b, a, span)?);
+        Ok(self.join(if same { Op::And } else { Op::Or }, vec![below, above]))
+    }
+
+    fn reads_links(&self, id: NodeId) -> bool {
+        let is_link = |slot: usize| matches!(self.scope.frame.slots[slot], Slot::Link { .. });
+        self.draft
+            .graph
+            .reach(&[id])
+            .into_iter()
+            .any(|id| self.draft.graph.node(id).slot().is_some_and(is_link))
+    }
+
+    /// `a <= b` or `a < b`.
+    fn less(&mut self, relation: Relation, a: NodeId, b: NodeId, span: Span) -> Result<Cond, Error> {
+        let graph = &mut self.draft.graph;
+        if !graph.moves(a) && !graph.moves(b) {
+            let op = if relation == Relation::NonPositive { Op::Le } else { Op::Lt };
+            let node = graph.binary(op, a, b);
+            return self.test(node, Sense::Positive, span);
+        }
+        if let Some(square) = self.distance_square(a).filter(|_| !self.draft.graph.moves(b)) {
+            return self.distance(relation, square, b, Side::Below, span);
+        }
+        if let Some(square) = self.distance_square(b).filter(|_| !self.draft.graph.moves(a)) {
+            return self.distance(relation, square, a, Side::Above, span);
+        }
+        let graph = &mut self.draft.graph;
+        let g = match (graph.is_zero(a), graph.is_zero(b)) {
+            (_, true) => a,
+            (true, false) => graph.unary(Op::Neg, b),
+            (false, false) => graph.binary(Op::Sub, a, b),
+        };
+        self.atom(relation, g, span)
+    }
+
+    /// e for `sqrt(e)`, u^2 + v^2 for `hypot(u, v)`.
+    fn distance_square(&mut self, id: NodeId) -> Option<NodeId> {
+        match self.draft.graph.node(id) {
+            Node::Unary(Op::Sqrt, e) => Some(e),
+            Node::Binary(Op::Hypot, u, v) => {
+                let squares = [u, v].map(|w| self.square(w));
+                Some(self.draft.graph.binary(Op::Add, squares[0], squares[1]))
+            }
+            _ => None,
+        }
+    }
+
+    fn square(&mut self, id: NodeId) -> NodeId {
+        let two = self.draft.graph.number(2.0);
+        self.draft.graph.binary(Op::Powi, id, two)
+    }
+
+    /// A distance, given by its square, below or above a `bound` that does not move.
+    fn distance(
+        &mut self,
+        relation: Relation,
+        square: NodeId,
+        bound: NodeId,
+        side: Side,
+        span: Span,
+    ) -> Result<Cond, Error> {
+        let (zero, limit) = (self.draft.graph.number(0.0), self.square(bound));
+        let (u, v) = if side == Side::Below { (square, limit) } else { (limit, square) };
+        let squares = self.less(relation, u, v, span)?;
+        // For a bound of unknown sign: below a negative one is nothing, above it everything.
+        let (op, sign_op, test) = match side {
+            Side::Below => (Op::And, Op::Le, [zero, bound]),
+            Side::Above => (Op::Or, Op::Lt, [bound, zero]),
+        };
+        let test = self.draft.graph.binary(sign_op, test[0], test[1]);
+        let sign = self.test(test, Sense::Positive, span)?;
+        Ok(self.join(op, vec![sign, squares]))
+    }
+
+    /// A boolean node.
+    fn test(&mut self, node: NodeId, sense: Sense, span: Span) -> Result<Cond, Error> {
+        self.count(span)?;
+        let graph = &mut self.draft.graph;
+        if graph.moves(node) {
+            // Only a boolean that went through a number: 1 where true.
+            let half = graph.number(0.5);
+            return match sense {
+                Sense::Positive => self.less(Relation::NonPositive, half, node, span),
+                Sense::Negative => self.less(Relation::NonPositive, node, half, span),
+            };
+        }
+        let node = if sense == Sense::Positive { node } else { graph.unary(Op::Not, node) };
+        Ok(graph.constant(node).map_or(Cond::Discrete(node), |value| Cond::Constant(value != 0.0)))
+    }
+
+    fn atom(&mut self, relation: Relation, g: NodeId, span: Span) -> Result<Cond, Error> {
+        self.count(span)?;
+        Ok(Cond::Atom(relation, g, span))
+    }
+
+    fn count(&mut self, span: Span) -> Result<(), Error> {
+        self.parts += 1;
+        if self.parts > PARTS_MAX { Err(Error::ConditionTooLarge { limit: PARTS_MAX, span }) } else { Ok(()) }
+    }
+}
+
+/// On which side of its bound a distance is to be.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Below,
+    Above,
+}

@@ -1,0 +1,98 @@
+//! A system under construction: what the passes of this floor share.
+
+use rustc_hash::FxHashMap;
+
+use crate::base::{Arena, Diagnostic};
+use crate::calculus::error::Error;
+use crate::calculus::graph::{Graph, NodeId};
+use crate::calculus::system::{AgentSystem, Column, Function, FunctionId, InteractionSystem, Layout, System};
+use crate::model::ir::{AgentType, Model, Type, Variable};
+
+/// See the head of this file.
+pub struct Draft<'m> {
+    /// What is lowered.
+    pub model: &'m Model,
+    /// All expressions so far.
+    pub graph: Graph,
+    /// All functions so far.
+    pub functions: Arena<Function>,
+    known: FxHashMap<Vec<NodeId>, FunctionId>,
+    /// The agent types; columns first, then the rest.
+    pub types: Vec<AgentSystem>,
+    /// What was wrong.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl<'m> Draft<'m> {
+    /// The columns of all types, and nothing else yet.
+    pub fn new(model: &'m Model) -> Self {
+        let types = model.types.iter().map(columns).collect();
+        let (graph, functions) = (Graph::default(), Arena::new());
+        Self { model, graph, functions, known: FxHashMap::default(), types, diagnostics: Vec::new() }
+    }
+
+    /// The function with these outputs; the first name it was given stays.
+    pub fn function(&mut self, name: impl FnOnce() -> String, outputs: Vec<NodeId>) -> FunctionId {
+        if let Some(&known) = self.known.get(&outputs) {
+            return known;
+        }
+        let id = self.functions.push(Function { name: name(), outputs: outputs.clone() });
+        self.known.insert(outputs, id);
+        id
+    }
+
+    /// Notes a failure and goes on with what comes next.
+    pub fn keep<T>(&mut self, result: Result<T, Error>) -> Option<T> {
+        result
+            .map_err(|error| {
+                let diagnostic = error.diagnostic();
+                if !self.diagnostics.contains(&diagnostic) {
+                    self.diagnostics.push(diagnostic);
+                }
+            })
+            .ok()
+    }
+
+    /// The system, if nothing was wrong.
+    pub fn finish(self, interactions: Vec<InteractionSystem>) -> Result<System, Vec<Diagnostic>> {
+        if !self.diagnostics.is_empty() {
+            return Err(self.diagnostics);
+        }
+        Ok(System {
+            graph: self.graph,
+            functions: self.functions,
+            types: self.types,
+            interactions,
+            population: self.model.population.clone(),
+            run: self.model.run.clone(),
+        })
+    }
+
+    /// The columns of an agent type.
+    pub fn layout(&self, ty: usize) -> &Layout {
+        &self.types[ty].layout
+    }
+}
+
+fn columns(ty: &AgentType) -> AgentSystem {
+    let column =
+        |v: &Variable| Column { name: v.name.clone(), factor: v.factor, boolean: v.ty == Type::Bool };
+    AgentSystem {
+        name: ty.name.clone(),
+        layout: Layout {
+            n_states: ty.states.len(),
+            n_params: ty.params.len(),
+            n_discretes: ty.discretes.len(),
+            n_links: ty.links.len(),
+            n_locks: 0,
+        },
+        states: ty.states.iter().map(column).collect(),
+        params: ty.params.iter().map(column).collect(),
+        discretes: ty.discretes.iter().map(column).collect(),
+        links: ty.links.iter().map(|link| link.name.clone()).collect(),
+        lets: Vec::new(),
+        declared: ty.declared.clone(),
+        modes: Vec::new(),
+        transitions: Vec::new(),
+    }
+}

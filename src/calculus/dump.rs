@@ -1,0 +1,341 @@
+//! The system as readable mathematics, for `hyc show --stage system`.
+//!
+//! A block for every flow, claim, list of actions, transition and let. What a block names `@1`, `@2`, ... stands at its end.
+
+use std::fmt::Write;
+
+use crate::calculus::graph::NodeId;
+use crate::calculus::print::{Names, Sheet};
+use crate::calculus::system::{
+    ActionStep, AgentSystem, Atom, ClaimKind, Column, Condition, Flow, Frame, FunctionId, Guard, KinkKind,
+    LetValue, ModeSystem, PairTransition, Quantified, System, Target, TransitionSystem, Trigger,
+};
+
+/// The whole system as text; the same for the same system.
+pub fn dump(system: &System) -> String {
+    let mut out = String::new();
+    for ty in &system.types {
+        agent(system, ty, &mut out);
+    }
+    for interaction in &system.interactions {
+        let types = interaction.types.map(|ty| system.types[ty].name.as_str());
+        let _ = writeln!(out, "interaction {} of {} and {}", interaction.name, types[0], types[1]);
+        for pair in &interaction.transitions {
+            pair_transition(system, pair, &mut out);
+        }
+        out.push('\n');
+    }
+    let nodes = system.graph.nodes().len();
+    let _ = writeln!(out, "{} functions over {nodes} nodes", system.functions.len());
+    out
+}
+
+fn agent(system: &System, ty: &AgentSystem, out: &mut String) {
+    let _ = writeln!(out, "agent {}", ty.name);
+    let columns = |columns: &[Column]| columns.iter().map(|column| column.name.clone()).collect::<Vec<_>>();
+    for (word, names) in [
+        ("states", columns(&ty.states)),
+        ("parameters", columns(&ty.params)),
+        ("discretes", columns(&ty.discretes)),
+        ("links", ty.links.clone()),
+    ] {
+        if !names.is_empty() {
+            let _ = writeln!(out, "  {word} {}", names.join(", "));
+        }
+    }
+    if ty.layout.n_locks > 0 {
+        let _ = writeln!(out, "  {} locks", ty.layout.n_locks);
+    }
+    for item in &ty.lets {
+        let mut block = Block::new(system, &item.frame);
+        let place = if item.mode == 0 { String::new() } else { format!(" in {}", ty.modes[item.mode].path) };
+        match &item.value {
+            LetValue::Number(value) => {
+                block.functions.push(*value);
+                let sheet = block.sheet();
+                block.line(2, format!("let {}{place} = {}", item.column.name, block.value(&sheet, *value)));
+                block.close(&sheet, out);
+            }
+            LetValue::Condition(guard) => {
+                block.add_guard(guard);
+                let sheet = block.sheet();
+                let text = block.condition(&sheet, guard, &guard.condition, 0);
+                block.line(2, format!("let {}{place} = {text}", item.column.name));
+                block.atoms(&sheet, &guard.atoms, 4);
+                block.close(&sheet, out);
+            }
+        }
+    }
+    for mode in &ty.modes {
+        self::mode(system, ty, mode, out);
+    }
+    for transition in &ty.transitions {
+        let mut head = format!("transition {}", transition.label);
+        if transition.source != 0 {
+            let _ = write!(head, " of {}", ty.modes[transition.source].path);
+        }
+        self::transition(system, transition, ty, head, out);
+    }
+    out.push('\n');
+}
+
+fn mode(system: &System, ty: &AgentSystem, mode: &ModeSystem, out: &mut String) {
+    let name = if mode.path.is_empty() { ty.name.as_str() } else { mode.path.as_str() };
+    let _ = writeln!(out, "  mode {name}");
+    if let Some(flow) = &mode.flow {
+        self::flow(system, ty, flow, out);
+    }
+    for claim in &mode.claims {
+        let mut block = Block::new(system, &claim.frame);
+        block.add_guard(&claim.violation);
+        let sheet = block.sheet();
+        let word = match claim.kind {
+            ClaimKind::Invariant => "invariant",
+            ClaimKind::Assert => "assert",
+        };
+        let text = block.condition(&sheet, &claim.violation, &claim.violation.condition, 0);
+        block.line(4, format!("{word} violated by {text}"));
+        block.atoms(&sheet, &claim.violation.atoms, 6);
+        block.close(&sheet, out);
+    }
+    for (word, list) in [("entry", &mode.entry), ("exit", &mode.exit)] {
+        if !list.steps.is_empty() {
+            let mut block = Block::new(system, &list.frame);
+            block.add_steps(&list.steps);
+            let sheet = block.sheet();
+            block.line(4, word.to_owned());
+            block.steps(&sheet, &list.steps, 6);
+            block.close(&sheet, out);
+        }
+    }
+}
+
+fn flow(system: &System, ty: &AgentSystem, flow: &Flow, out: &mut String) {
+    let mut block = Block::new(system, &flow.frame);
+    block.functions.extend([flow.rates, flow.accelerations, flow.jacobian_values]);
+    for kink in &flow.kinks {
+        block.functions.push(kink.initial);
+        block.functions.extend(kink_atoms(&kink.kind).iter().map(|atom| atom.rates));
+    }
+    let sheet = block.sheet();
+    let outputs = |function: FunctionId| &system.functions[function].outputs;
+    for (primes, function) in [("'", flow.rates), ("''", flow.accelerations)] {
+        for (state, &rate) in ty.states.iter().zip(outputs(function)) {
+            block.line(4, format!("{}{primes} = {}", state.name, sheet.text(rate)));
+        }
+    }
+    for (entry, &value) in flow.jacobian.iter().zip(outputs(flow.jacobian_values)) {
+        let by = sheet.state(entry.slot, entry.column);
+        block.line(4, format!("d({}')/d({by}) = {}", ty.states[entry.row].name, sheet.text(value)));
+    }
+    for kink in &flow.kinks {
+        let holds = match &kink.kind {
+            KinkKind::Branch(_) => "is 1 while",
+            KinkKind::Integer { .. } => "is",
+        };
+        let lock = kink.lock - ty.layout.lock(0);
+        block.line(4, format!("kink: lock{lock} {holds} {}", block.value(&sheet, kink.initial)));
+        for atom in kink_atoms(&kink.kind) {
+            block.atom(&sheet, atom, "surface", 6);
+        }
+    }
+    if !flow.couples.is_empty() {
+        let names: Vec<&str> = flow.couples.iter().map(|&slot| flow.frame.slots[slot].name()).collect();
+        block.line(4, format!("coupled with {}", names.join(", ")));
+    }
+    block.close(&sheet, out);
+}
+
+fn kink_atoms(kind: &KinkKind) -> Vec<&Atom> {
+    match kind {
+        KinkKind::Branch(atom) => vec![atom],
+        KinkKind::Integer { below, above } => vec![below, above],
+    }
+}
+
+fn pair_transition(system: &System, pair: &PairTransition, out: &mut String) {
+    let kind = if pair.symmetric { "symmetric" } else { "ordered" };
+    let head = format!("transition {}, {kind}", pair.transition.label);
+    let slot = &pair.transition.frame.slots[0];
+    transition(system, &pair.transition, &system.types[slot.ty()], head, out);
+}
+
+fn transition(
+    system: &System,
+    transition: &TransitionSystem,
+    ty: &AgentSystem,
+    head: String,
+    out: &mut String,
+) {
+    let mut block = Block::new(system, &transition.frame);
+    let (word, time, guard) = match &transition.trigger {
+        Trigger::When(guard) => ("when", None, Some(guard)),
+        Trigger::After { delay, guard } => ("after", Some(*delay), guard.as_ref()),
+        Trigger::Every { period, guard } => ("every", Some(*period), guard.as_ref()),
+    };
+    block.functions.extend(time.iter().chain(&transition.priority));
+    if let Some(guard) = guard {
+        block.add_guard(guard);
+    }
+    block.add_steps(&transition.actions.steps);
+    let sheet = block.sheet();
+    let target = transition.target.map_or(String::new(), |target| format!(" -> {}", ty.modes[target].path));
+    block.line(2, format!("{head}{target}"));
+    if let Some(time) = time {
+        block.line(4, format!("{word} {}", block.value(&sheet, time)));
+    }
+    if let Some(guard) = guard {
+        block.line(4, format!("when {}", block.condition(&sheet, guard, &guard.condition, 0)));
+        block.atoms(&sheet, &guard.atoms, 6);
+    }
+    if let Some(priority) = transition.priority {
+        block.line(4, format!("priority {}", block.value(&sheet, priority)));
+    }
+    block.steps(&sheet, &transition.actions.steps, 4);
+    block.close(&sheet, out);
+}
+
+/// Lines that share names for their parts.
+struct Block<'a> {
+    system: &'a System,
+    names: Names<'a>,
+    functions: Vec<FunctionId>,
+    lines: String,
+}
+
+impl<'a> Block<'a> {
+    fn new(system: &'a System, frame: &'a Frame) -> Self {
+        let names = Names { types: &system.types, frame };
+        Self { system, names, functions: Vec::new(), lines: String::new() }
+    }
+
+    fn add_guard(&mut self, guard: &Guard) {
+        self.functions.extend(guard.atoms.iter().map(|atom| atom.rates));
+        self.add_tests(&guard.condition);
+    }
+
+    fn add_tests(&mut self, condition: &Condition) {
+        match condition {
+            Condition::Constant(_) | Condition::Atom(_) => {}
+            Condition::Discrete(function) => self.functions.push(*function),
+            Condition::And(terms) | Condition::Or(terms) => {
+                terms.iter().for_each(|term| self.add_tests(term))
+            }
+            Condition::Exists(quantified) | Condition::Forall(quantified) => self.add_tests(&quantified.body),
+            Condition::Rising(_, inner) => self.add_tests(inner),
+        }
+    }
+
+    fn add_steps(&mut self, steps: &[ActionStep]) {
+        for step in steps {
+            match step {
+                ActionStep::Assign { value, .. } => self.functions.push(*value),
+                ActionStep::If { condition, then, otherwise } => {
+                    self.add_guard(condition);
+                    self.add_steps(then);
+                    self.add_steps(otherwise);
+                }
+                ActionStep::Goto { .. } | ActionStep::Stop { .. } => {}
+            }
+        }
+    }
+
+    /// Names for the parts of all that has been added.
+    fn sheet(&self) -> Sheet<'a> {
+        let outputs = self.functions.iter().flat_map(|&function| &self.system.functions[function].outputs);
+        let roots: Vec<NodeId> = outputs.copied().collect();
+        Sheet::new(&self.system.graph, self.names, &roots)
+    }
+
+    fn line(&mut self, indent: usize, text: String) {
+        let _ = writeln!(self.lines, "{:indent$}{text}", "");
+    }
+
+    fn close(mut self, sheet: &Sheet, out: &mut String) {
+        for explanation in sheet.explanations() {
+            self.line(6, format!("where {explanation}"));
+        }
+        out.push_str(&self.lines);
+    }
+
+    fn value(&self, sheet: &Sheet, function: FunctionId) -> String {
+        sheet.text(self.system.functions[function].outputs[0])
+    }
+
+    fn atoms(&mut self, sheet: &Sheet, atoms: &[Atom], indent: usize) {
+        for (k, atom) in atoms.iter().enumerate() {
+            self.atom(sheet, atom, &format!("[{}]", k + 1), indent);
+        }
+    }
+
+    fn atom(&mut self, sheet: &Sheet, atom: &Atom, head: &str, indent: usize) {
+        let jumps = if atom.smooth { "" } else { ", jumps" };
+        self.line(indent, format!("{head} {}{jumps}", atom.text));
+        for (name, &output) in ["g  ", "g' ", "g''"].iter().zip(&self.system.functions[atom.rates].outputs) {
+            self.line(indent + 2, format!("{name} = {}", sheet.text(output)));
+        }
+    }
+
+    /// `level`: 0 outside, 1 inside `or`, 2 inside `and`.
+    fn condition(&self, sheet: &Sheet, guard: &Guard, condition: &Condition, level: usize) -> String {
+        let (text, own) = match condition {
+            Condition::Constant(value) => (value.to_string(), 3),
+            Condition::Discrete(function) => match self.value(sheet, *function) {
+                text if text.contains(" or ") => (text, 1),
+                text => (text, 2),
+            },
+            Condition::Atom(k) => (format!("[{}] {}", k + 1, guard.atoms[*k].text), 3),
+            Condition::And(terms) => (self.joined(sheet, guard, terms, " and ", 2), 2),
+            Condition::Or(terms) => (self.joined(sheet, guard, terms, " or ", 1), 1),
+            Condition::Exists(quantified) => (self.quantified(sheet, guard, "exists", quantified), 0),
+            Condition::Forall(quantified) => (self.quantified(sheet, guard, "forall", quantified), 0),
+            Condition::Rising(_, inner) => (format!("rising({})", self.condition(sheet, guard, inner, 0)), 3),
+        };
+        if own < level { format!("({text})") } else { text }
+    }
+
+    fn joined(&self, sheet: &Sheet, guard: &Guard, terms: &[Condition], word: &str, level: usize) -> String {
+        let texts: Vec<String> = terms.iter().map(|term| self.condition(sheet, guard, term, level)).collect();
+        texts.join(word)
+    }
+
+    fn quantified(&self, sheet: &Sheet, guard: &Guard, word: &str, quantified: &Quantified) -> String {
+        let name = self.names.frame.slots[quantified.slot].name();
+        let other = if quantified.other { "other " } else { "" };
+        let body = self.condition(sheet, guard, &quantified.body, 0);
+        format!("{word} {name} in {other}{}: {body}", self.names.types[quantified.ty].name)
+    }
+
+    fn steps(&mut self, sheet: &Sheet, steps: &[ActionStep], indent: usize) {
+        for step in steps {
+            match step {
+                ActionStep::Assign { slot, target, value, .. } => {
+                    let column = match target {
+                        Target::State(k) => sheet.state(*slot, *k),
+                        Target::Aux(k) => sheet.aux(*slot, *k),
+                        Target::Mode => unreachable!("modes are not assigned"),
+                    };
+                    self.line(indent, format!("{column} := {}", self.value(sheet, *value)));
+                }
+                ActionStep::If { condition, then, otherwise } => {
+                    let test = self.condition(sheet, condition, &condition.condition, 0);
+                    self.line(indent, format!("if {test}"));
+                    self.steps(sheet, then, indent + 2);
+                    if !otherwise.is_empty() {
+                        self.line(indent, "else".to_owned());
+                        self.steps(sheet, otherwise, indent + 2);
+                    }
+                }
+                ActionStep::Goto { slot, target, .. } => {
+                    let slot = &self.names.frame.slots[*slot];
+                    let mode = &self.names.types[slot.ty()].modes[*target].path;
+                    self.line(indent, format!("{} -> {mode}", slot.name()));
+                }
+                ActionStep::Stop { reason, .. } => {
+                    let reason = reason.as_ref().map_or(String::new(), |reason| format!(" {reason:?}"));
+                    self.line(indent, format!("stop{reason}"));
+                }
+            }
+        }
+    }
+}

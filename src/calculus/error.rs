@@ -1,0 +1,99 @@
+//! What this floor refuses, each failure with its code and its words.
+
+use crate::base::{Diagnostic, Span};
+
+/// Why a model has no equations.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Error {
+    /// `exists` or `forall` where a number is computed.
+    QuantifierInNumber { span: Span },
+    /// `rising` or `crossing` outside a guard.
+    EventOutsideGuard { word: &'static str, span: Span },
+    /// `not rising(..)`, `not crossing(..)`.
+    EventNegated { word: &'static str, span: Span },
+    /// `rising` below a quantifier.
+    RisingQuantified { span: Span },
+    /// x' that is computed from itself.
+    RateCircle { span: Span },
+    /// The rate of another agent in a flow.
+    ForeignRate { span: Span },
+    /// Too many agents in one frame.
+    TooManySlots { limit: usize, span: Span },
+    /// A condition with too many parts.
+    ConditionTooLarge { limit: usize, span: Span },
+    /// A condition too deeply nested once lets and functions are inlined.
+    ConditionTooDeep { limit: usize, span: Span },
+    /// `if c then lead else none`, where c is known at run time only.
+    ChoiceOfAgents { span: Span },
+    /// A flow that reads through a link that may be none.
+    FlowReadsNone { link: String, span: Span },
+}
+
+impl Error {
+    /// The message to a person.
+    pub fn diagnostic(self) -> Diagnostic {
+        match self {
+            Error::QuantifierInNumber { span } => {
+                Diagnostic::error("HY0301", "a quantifier inside a number is not supported yet")
+                    .label(span, "true or false for a whole set of agents")
+                    .help(
+                        "use it in a guard, in an `if` of actions, or assign it to a `discrete` of type bool",
+                    )
+            }
+            Error::EventOutsideGuard { word, span } => {
+                Diagnostic::error("HY0302", format!("`{word}` outside the guard of a transition"))
+                    .label(span, "true at an instant, not over a stretch of time")
+                    .help("write it in a `when`")
+            }
+            Error::EventNegated { word, span } => {
+                Diagnostic::error("HY0303", format!("`{word}` cannot be negated"))
+                    .label(span, "true at an instant, so its negation holds nearly always")
+                    .help("negate the condition inside it")
+            }
+            Error::RisingQuantified { span } => {
+                Diagnostic::error("HY0304", "`rising` below a quantifier is not supported yet")
+                    .label(span, "would need a memory for every agent of the set")
+                    .help("write `rising(exists ...)`, which has one memory")
+            }
+            Error::RateCircle { span } => Diagnostic::error("HY0305", "a rate that is computed from itself")
+                .label(span, "needs its own value")
+                .help("solve the equations for the rates by hand"),
+            Error::ForeignRate { span } => {
+                Diagnostic::error("HY0306", "the rate of another agent in a flow is not supported yet")
+                    .label(span, "a rate, not a state")
+                    .help("write the other agent's equation in its place")
+            }
+            Error::TooManySlots { limit, span } => {
+                Diagnostic::error("HY0307", "an expression that reaches too many agents")
+                    .label(span, "one more than can be read together")
+                    .note(format!("the limit is {limit} agents bound by quantifiers or reached by links"))
+                    .help("does a `let` read the same `let` through a link, without end?")
+            }
+            Error::ConditionTooLarge { limit, span } => {
+                Diagnostic::error("HY0308", "a condition that becomes too large")
+                    .label(span, "once lets and functions are put in")
+                    .note(format!("the limit is {limit} comparisons and tests"))
+                    .help("keep what is used several times in a `discrete`, or split the transition")
+            }
+            Error::ConditionTooDeep { limit, span } => {
+                Diagnostic::error("HY0309", "a condition that becomes too deeply nested")
+                    .label(span, "once lets and functions are put in")
+                    .note(format!("the limit is {limit} levels"))
+                    .help("shorten the chain of lets or functions that it goes through")
+            }
+            Error::ChoiceOfAgents { span } => {
+                Diagnostic::error("HY0310", "a choice between agents is not supported yet")
+                    .label(span, "which agent this is depends on the state")
+                    .help("choose between the values that are read from the agents")
+            }
+            Error::FlowReadsNone { link, span } => Diagnostic::error(
+                "HY0311",
+                format!("a flow reads `{link}`, which may be none"),
+            )
+            .label(span, "has no value where the link is none")
+            .help(format!(
+                "write `if {link} then ... else ...`, or make the link a parameter, which is never none"
+            )),
+        }
+    }
+}

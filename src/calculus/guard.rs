@@ -1,0 +1,116 @@
+//! From a condition over nodes to a guard: atoms numbered, each with its rates, all as functions.
+
+use crate::base::Span;
+use crate::calculus::condition::{self, Cond, Place, Sense};
+use crate::calculus::derive;
+use crate::calculus::draft::Draft;
+use crate::calculus::error::Error;
+use crate::calculus::frame::Scope;
+use crate::calculus::graph::{Graph, Node, NodeId};
+use crate::calculus::print::{self, Names};
+use crate::calculus::system::{Atom, Condition, Frame, Guard, Quantified, Relation};
+use crate::math::Op;
+use crate::model::ir::{ExprId, Quantifier};
+
+/// Lowers a boolean expression to a guard; `name` is for listings.
+pub fn guard(
+    draft: &mut Draft,
+    scope: &mut Scope,
+    place: Place,
+    expr: ExprId,
+    sense: Sense,
+    name: &str,
+) -> Result<Guard, Error> {
+    let cond = condition::lower(draft, scope, place, expr, sense)?;
+    Ok(finish(draft, &scope.frame, cond, name))
+}
+
+/// Numbers the atoms of a condition.
+pub fn finish(draft: &mut Draft, frame: &Frame, cond: Cond, name: &str) -> Guard {
+    let mut numbering = Numbering { draft, frame, name, atoms: Vec::new(), nodes: Vec::new(), n_rising: 0 };
+    let condition = numbering.condition(cond);
+    Guard { condition, atoms: numbering.atoms, n_rising: numbering.n_rising }
+}
+
+struct Numbering<'d, 'm> {
+    draft: &'d mut Draft<'m>,
+    frame: &'d Frame,
+    name: &'d str,
+    atoms: Vec<Atom>,
+    nodes: Vec<(Relation, NodeId)>,
+    n_rising: usize,
+}
+
+impl Numbering<'_, '_> {
+    /// As deep as the lowering was, which has a limit.
+    fn condition(&mut self, cond: Cond) -> Condition {
+        match cond {
+            Cond::Constant(value) => Condition::Constant(value),
+            Cond::Discrete(node) => {
+                let name = self.name;
+                Condition::Discrete(self.draft.function(|| format!("{name} test"), vec![node]))
+            }
+            Cond::Atom(relation, g, span) => Condition::Atom(self.atom(relation, g, span)),
+            Cond::And(terms) => Condition::And(terms.into_iter().map(|term| self.condition(term)).collect()),
+            Cond::Or(terms) => Condition::Or(terms.into_iter().map(|term| self.condition(term)).collect()),
+            Cond::Quantified(kind, range, body) => {
+                let body = Box::new(self.condition(*body));
+                let quantified = Quantified { slot: range.slot, ty: range.ty, other: range.other, body };
+                match kind {
+                    Quantifier::Exists => Condition::Exists(quantified),
+                    Quantifier::Forall => Condition::Forall(quantified),
+                }
+            }
+            Cond::Rising(inner) => {
+                let number = self.n_rising;
+                self.n_rising += 1;
+                Condition::Rising(number, Box::new(self.condition(*inner)))
+            }
+        }
+    }
+
+    fn atom(&mut self, relation: Relation, g: NodeId, span: Span) -> usize {
+        if let Some(k) = self.nodes.iter().position(|&known| known == (relation, g)) {
+            return k;
+        }
+        let name = format!("{} {}", self.name, self.atoms.len() + 1);
+        let atom = atom(self.draft, self.frame, relation, g, span, &name);
+        self.atoms.push(atom);
+        self.nodes.push((relation, g));
+        self.atoms.len() - 1
+    }
+}
+
+/// A comparison with its functions.
+pub fn atom(draft: &mut Draft, frame: &Frame, relation: Relation, g: NodeId, span: Span, name: &str) -> Atom {
+    let [first, second] = derive::rates(&mut draft.graph, g);
+    let value = draft.function(|| name.to_owned(), vec![g]);
+    let rates = draft.function(|| format!("{name} rates"), vec![g, first, second]);
+    let reach = draft.graph.reach(&[g]);
+    let mut slots: Vec<usize> = reach.iter().filter_map(|&id| draft.graph.node(id).slot()).collect();
+    slots.sort_unstable();
+    slots.dedup();
+    let smooth = !reach.iter().any(|&id| jumps(&draft.graph, id));
+    let names = Names { types: &draft.types, frame };
+    let text = print::short_comparison(&draft.graph, names, relation, g);
+    Atom { relation, value, rates, smooth, slots, text, span }
+}
+
+/// Whether the value of a node can jump while its operands move continuously.
+fn jumps(graph: &Graph, id: NodeId) -> bool {
+    let node = graph.node(id);
+    let moving = |id| graph.moves(id);
+    match node {
+        Node::Select(condition, ..) => moving(condition),
+        Node::Unary(op, a) | Node::Binary(op, a, _) => match op {
+            Op::Sign | Op::Floor | Op::Ceil | Op::Round | Op::Trunc | Op::Not => moving(a),
+            Op::Mod | Op::Atan2 | Op::Lt | Op::Le | Op::Eq | Op::Ne | Op::And | Op::Or => moving(id),
+            Op::Neg | Op::Add | Op::Sub | Op::Mul | Op::Div | Op::Powi | Op::Pow | Op::Sin | Op::Cos => false,
+            Op::Tan | Op::Asin | Op::Acos | Op::Atan | Op::Sinh | Op::Cosh | Op::Tanh | Op::Asinh => false,
+            Op::Acosh | Op::Atanh | Op::Exp | Op::Log | Op::Log2 | Op::Log10 | Op::Sqrt | Op::Cbrt => false,
+            Op::Abs | Op::Min | Op::Max | Op::Hypot | Op::Select => false,
+        },
+        Node::Constant(_) | Node::Time | Node::State { .. } | Node::Rate { .. } => false,
+        Node::Acceleration { .. } | Node::Aux { .. } => false,
+    }
+}
