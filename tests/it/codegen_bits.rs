@@ -147,18 +147,18 @@ fn bounds_contain_the_values_of_every_member() {
     assert!(bounded > 1000, "only {bounded} bounds say anything");
 }
 
-/// A step as the formula says, with the rates from the interpreter.
-fn plain_step(
-    rates: &dyn Fn(&[f64], f64, &mut [f64]),
-    x: &[f64],
-    time: f64,
-    h: f64,
-    k: &mut [f64],
-) -> (Vec<f64>, Vec<f64>) {
+/// Rates at a state and a time.
+type Rates<'a> = dyn Fn(&[f64], f64, &mut [f64]) + 'a;
+
+/// A step as the formula says: the new states and the errors.
+fn plain_step(rates: &Rates<'_>, x: &[f64], time: f64, h: f64, k: &mut [f64]) -> (Vec<f64>, Vec<f64>) {
     let n = x.len();
     let combine = |k: &[f64], weights: &[f64], i: usize| {
         let terms = weights.iter().enumerate().filter(|(_, weight)| **weight != 0.0);
-        h * terms.map(|(s, weight)| weight * k[s * n + i]).reduce(|sum, term| sum + term).unwrap()
+        h * terms
+            .map(|(s, weight)| weight * k[s * n + i])
+            .reduce(|sum, term| sum + term)
+            .expect("a weight is not 0")
     };
     let mut stage = Vec::new();
     for s in 1..7 {
@@ -170,8 +170,8 @@ fn plain_step(
 }
 
 fn check_steps(system: System, dice: &mut Dice, rounds: usize) {
-    let interpreted = compile(system.clone(), Backend::Interpreter).unwrap();
-    let compiled = compile(system, Backend::Jit).unwrap();
+    let [interpreted, compiled] =
+        [Backend::Interpreter, Backend::Jit].map(|back| compile(system.clone(), back).expect("it compiles"));
     assert!(interpreted.steps[0][0].is_none());
     let step = compiled.steps[0][0].as_ref().expect("the flow reads no foreign state");
     let n = step.n_states();

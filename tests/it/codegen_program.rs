@@ -35,7 +35,7 @@ fn the_cost_does_not_depend_on_the_number_of_agents() {
 }
 
 #[test]
-fn programs_can_be_dropped_and_kernels_outlive_them_nowhere() {
+fn two_hundred_programs_can_be_compiled_and_dropped() {
     let mut dice = Dice(77);
     for _ in 0..200 {
         let (graph, functions) = random_functions(&mut dice, 20);
@@ -50,17 +50,17 @@ fn kernels_can_be_shared_by_threads() {
     shared::<Kernel>();
     shared::<StepKernel>();
     let program = compile(bumper(), Backend::Jit).unwrap();
-    let heading = |th: f64| {
+    let heading = &|th: f64| {
         let mut out = [0.0; 3];
         let view = AgentView { states: &[0.0, 0.0, th], rates: &[], accelerations: &[], aux: &[1.0; 7] };
         program.kernels[0].eval(&[view], 0.0, &mut out);
         out[0]
     };
     std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..4).map(|k| scope.spawn(move || f64::from(k))).collect();
-        for thread in threads {
-            let th = thread.join().unwrap();
-            assert_eq!(heading(th), Op::Cos.eval([th, 0.0, 0.0]));
+        let headings = [0.0, 1.0, 2.0, 3.0];
+        let threads = headings.map(|th| scope.spawn(move || heading(th)));
+        for (th, thread) in headings.into_iter().zip(threads) {
+            assert_eq!(thread.join().unwrap(), Op::Cos.eval([th, 0.0, 0.0]));
         }
     });
 }
@@ -78,7 +78,12 @@ fn a_function_that_is_too_long_is_interpreted() {
         .map(|(name, node)| Function { name: name.into(), outputs: vec![node] })
         .into_iter()
         .collect();
-    let program = compile(bare(graph, functions), Backend::Jit).unwrap();
+    let system = bare(graph, functions);
+    assert!(
+        dump_tape(&system).starts_with("long: 50001 instructions, 2 registers\n"),
+        "registers are used again"
+    );
+    let program = compile(system, Backend::Jit).unwrap();
     assert_eq!((program.cost.functions, program.cost.interpreted), (1, 1));
     let mut out = [0.0];
     let view = AgentView { states: &[0.5], rates: &[], accelerations: &[], aux: &[] };
