@@ -200,8 +200,12 @@ impl Outline {
             }
             ActionKind::Stop(reason) => self.line(&format!("stop{}", text_after(reason))),
             ActionKind::If { branches, otherwise } => {
-                for branch in branches {
-                    self.line(&format!("if {}", Flat(&branch.condition)));
+                for (k, branch) in branches.iter().enumerate() {
+                    self.line(&format!(
+                        "{} {}",
+                        if k > 0 { "else if" } else { "if" },
+                        Flat(&branch.condition)
+                    ));
                     self.actions("then", &branch.actions);
                 }
                 otherwise.iter().for_each(|actions| self.actions("else", actions));

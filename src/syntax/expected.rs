@@ -24,9 +24,9 @@ pub fn explain(file: FileId, text: &str, tokens: &[Token], error: &Error<Rule>) 
     let found = tokens.partition_point(|token| token.end <= at);
     let failure = Failure { file, text, tokens, found, fitting: positives };
     failure
-        .wrong_assignment()
+        .argument_style()
+        .or_else(|| failure.wrong_assignment())
         .or_else(|| failure.chained_comparison())
-        .or_else(|| failure.argument_style())
         .or_else(|| failure.misspelt_keyword())
         .or_else(|| failure.reserved_word())
         .unwrap_or_else(|| failure.unexpected())
@@ -64,7 +64,10 @@ impl Failure<'_> {
     fn span_of(&self, k: usize) -> Span {
         match self.tokens.get(k) {
             Some(token) => Span::new(self.file, token.start, token.end),
-            None => Span::new(self.file, self.text.len(), self.text.len()),
+            None => {
+                let end = self.tokens.last().map_or(0, |last| last.end);
+                Span::new(self.file, end, end)
+            }
         }
     }
 
@@ -135,7 +138,7 @@ impl Failure<'_> {
         }
         let only =
             |rules: &[Rule]| !self.fitting.is_empty() && self.fitting.iter().all(|rule| rules.contains(rule));
-        if only(&[Rule::equals, Rule::tilde]) {
+        if only(&[Rule::equals, Rule::tilde]) && !matches!(self.found(), ":=" | "==") {
             let (title, help) = ("the arguments of a constructor have names", "write `Car(v = 4)`");
             return Some(SyntaxError::ArgumentStyle { span: self.span_of(self.found - 1), title, help });
         }
@@ -163,56 +166,37 @@ impl Failure<'_> {
         matches!(self.token(Some(k)), "=" | "create") && self.found() != ")"
     }
 
-    /// The keywords that would have fitted at the failure.
-    fn keywords(&self) -> impl Iterator<Item = String> {
-        let mut words = Vec::new();
-        for rule in self.fitting {
-            words.extend(words_that_begin(*rule));
-        }
-        words.into_iter()
-    }
-
-    /// `sate x, y`: a word, taken for a name, that begins no statement but looks like a keyword.
+    /// `sate x, y`: a word that begins no statement but looks like a keyword that does.
     fn misspelt_keyword(&self) -> Option<SyntaxError> {
-        let candidates = [self.found.checked_sub(1), Some(self.found)];
-        for k in candidates.into_iter().flatten().filter(|&k| self.is_word(k)) {
-            let word = self.token(Some(k));
-            if is_reserved(word) {
-                continue;
-            }
-            let as_found = k == self.found;
-            let after_name = self.fits(Rule::colon)
-                || self.fits(Rule::assign)
-                || self.fits(Rule::prime)
-                || self.fits(Rule::arrow);
-            if !as_found && !(after_name && self.begins_statement(k)) {
-                continue;
-            }
-            let known: Vec<String> = if as_found {
-                self.keywords().collect()
-            } else {
-                STATEMENTS.iter().map(|word| word.to_string()).collect()
-            };
-            let close =
-                known.into_iter().map(|keyword| (strsim::osa_distance(word, &keyword), keyword)).min();
-            if let Some((distance, keyword)) = close
-                && distance <= if word.len() > 4 { 2 } else { 1 }
-            {
-                return Some(SyntaxError::MisspeltKeyword {
-                    span: self.span_of(k),
-                    word: word.to_string(),
-                    keyword,
-                });
-            }
-        }
-        None
+        let fitting: Vec<String> = self.fitting.iter().flat_map(|rule| words_that_begin(*rule)).collect();
+        let known: Vec<String> = STATEMENTS.iter().map(|word| word.to_string()).collect();
+        let (k, keyword) = self
+            .looks_like(Some(self.found), &fitting)
+            .or_else(|| self.looks_like(self.statement_start(), &known))?;
+        Some(SyntaxError::MisspeltKeyword {
+            span: self.span_of(k),
+            word: self.token(Some(k)).to_string(),
+            keyword,
+        })
     }
 
-    /// Whether nothing before this word on its line is part of a statement that goes on.
-    fn begins_statement(&self, k: usize) -> bool {
-        let start = self.tokens[k].start;
-        let line = self.text[..start].rfind(['\n', ';', '{', '}']).map_or(0, |at| at + 1);
-        self.text[line..start].trim().is_empty()
+    /// The number of a token that is a name but nearly one of these words, and that word.
+    fn looks_like(&self, k: Option<usize>, words: &[String]) -> Option<(usize, String)> {
+        let k = k.filter(|&k| self.is_word(k) && !is_reserved(self.token(Some(k))))?;
+        let name = self.token(Some(k));
+        let distance = |word: &String| (strsim::osa_distance(name, word), !word.starts_with(&name[..1]));
+        let nearest = words.iter().min_by_key(|word| distance(word))?;
+        let near = if name.len() > 4 { 2 } else { 1 };
+        (distance(nearest).0 <= near).then(|| (k, nearest.clone()))
+    }
+
+    /// The first token of the line on which the grammar gave up, if it can be meant as the keyword of a statement.
+    fn statement_start(&self) -> Option<usize> {
+        let end = self.tokens.get(self.found)?.start;
+        let line = self.text[..end].rfind(['\n', ';', '{', '}']).map_or(0, |at| at + 1);
+        let first = self.tokens.partition_point(|token| token.start < line);
+        let named = matches!(self.token(Some(first + 1)), "=" | ":=" | ":" | "~" | "'" | "." | "->");
+        (first < self.found && !named).then_some(first)
     }
 
     fn reserved_word(&self) -> Option<SyntaxError> {
@@ -227,7 +211,7 @@ impl Failure<'_> {
             .all(|rule| names(rule) || *rule == Rule::close_paren || *rule == Rule::kw_other);
         let named = self.fitting.iter().any(names);
         let like_a_name = matches!(self.token(Some(self.found + 1)), "=" | ":=" | ":" | "~" | "'");
-        let statement = self.keywords().count() > 3;
+        let statement = self.fitting.iter().flat_map(|rule| words_that_begin(*rule)).count() > 3;
         (named && only_names || like_a_name && (named || statement))
             .then(|| SyntaxError::ReservedWord { span: self.span(), word: word.to_string() })
     }
@@ -258,6 +242,10 @@ impl Failure<'_> {
                 }
             }
         }
+        if self.fits(Rule::plus) {
+            let suffixes = ["a unit", "`(`", "`[`", "`'`"];
+            words.retain(|word| !suffixes.contains(&word.as_str()));
+        }
         if words.len() > 1 {
             words.retain(|word| word != OPERATOR);
         }
@@ -275,6 +263,7 @@ impl Failure<'_> {
                 Some("in an expression write `if c then a else b`".to_string())
             }
             "then" => Some("among actions write `if c { ... } else { ... }`".to_string()),
+            ":=" => Some("actions stand in braces: `{ x := 3 }`".to_string()),
             "," if self.fits(Rule::close_brace) => Some("statements need no separator".to_string()),
             "not" => Some("put the condition in parentheses: `(not p)`".to_string()),
             _ => None,

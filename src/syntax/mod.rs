@@ -5,7 +5,7 @@
 //! [`MAX_HEIGHT`] nodes. It does not know what a name, a type, a unit or a number means.
 
 pub mod ast;
-pub mod error;
+mod error;
 mod scan;
 mod nesting;
 mod grammar;
@@ -28,10 +28,10 @@ pub const MAX_NESTING: usize = 256;
 pub const MAX_HEIGHT: usize = 1024;
 
 /// The size of the largest file, in bytes.
-pub const MAX_FILE_BYTES: usize = 64 << 20;
+pub const MAX_FILE_BYTES: usize = 16 << 20;
 
 /// The stack on which this floor recurses: several times what the deepest text needs in a build without optimisation.
-const STACK_BYTES: usize = 256 << 20;
+const STACK_BYTES: usize = 64 << 20;
 
 /// The syntax tree of a text, or what is wrong with the text.
 pub fn parse(file: FileId, text: &str) -> Result<Ast, Vec<Diagnostic>> {

@@ -47,8 +47,8 @@ impl Frame {
 pub fn check_nesting(file: FileId, text: &str, tokens: &[Token], limit: usize) -> Result<(), SyntaxError> {
     let mut walk = Walk { file, text, frames: vec![Frame::new(None, false)], depth: 0 };
     for (k, &token) in tokens.iter().enumerate() {
-        let next_is_word = tokens.get(k + 1).is_some_and(|next| next.kind == TokenKind::Word);
-        walk.step(token, next_is_word)?;
+        let next = tokens.get(k + 1).map_or("", |next| &text[next.start..next.end]);
+        walk.step(token, next)?;
         if walk.depth > limit {
             return Err(SyntaxError::TooDeep { span: walk.span(token), limit });
         }
@@ -79,10 +79,10 @@ impl Walk<'_> {
         self.frames.last_mut().expect("the outermost frame is never closed")
     }
 
-    fn step(&mut self, token: Token, next_is_word: bool) -> Result<(), SyntaxError> {
+    fn step(&mut self, token: Token, next: &str) -> Result<(), SyntaxError> {
         match token.kind {
             TokenKind::Number | TokenKind::Text => self.operand(),
-            TokenKind::Word => return self.word(token, next_is_word),
+            TokenKind::Word => return self.word(token, next),
             TokenKind::Symbol => return self.symbol(token),
         }
         Ok(())
@@ -126,13 +126,13 @@ impl Walk<'_> {
         }
     }
 
-    fn word(&mut self, token: Token, next_is_word: bool) -> Result<(), SyntaxError> {
+    fn word(&mut self, token: Token, next: &str) -> Result<(), SyntaxError> {
         match &self.text[token.start..token.end] {
             "if" => self.prefix(Pending::Condition),
             "then" => self.turn(Pending::Condition, Pending::Then),
             "else" => self.turn(Pending::Then, Pending::Else),
             "exists" | "forall" | "count" | "sum" | "nearest" => self.prefix(Pending::Quantifier),
-            "min" | "max" if next_is_word => self.prefix(Pending::Quantifier),
+            "min" | "max" if begins_word(next) => self.prefix(Pending::Quantifier),
             "where" | "by" => self.turn(Pending::Quantifier, Pending::Quantifier),
             "not" => self.prefix(Pending::Not),
             "always" | "eventually" => self.prefix(Pending::Temporal),
@@ -140,7 +140,8 @@ impl Walk<'_> {
             "is" => self.pop_while(|pending| pending == Pending::Tight),
             "in" | "other" => self.top().after_operand = false,
             "import" | "param" | "fn" | "agent" | "interaction" | "system" | "property" | "run" => {
-                if let Some(open) = self.top().open {
+                let begins_item = begins_word(next) || next.starts_with(['{', '"']);
+                if let Some(open) = self.top().open.filter(|_| begins_item) {
                     let before = format!("`{}`", &self.text[token.start..token.end]);
                     return Err(self.unclosed(open, self.span(token), before));
                 }
@@ -208,4 +209,8 @@ impl Walk<'_> {
         let bracket = char::from(self.text.as_bytes()[open.start]);
         SyntaxError::Unclosed { open: self.span(open), bracket, missed, before }
     }
+}
+
+fn begins_word(token: &str) -> bool {
+    token.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
 }

@@ -130,7 +130,7 @@ fn number_help(text: &str, len: usize) -> String {
         format!("write `{}`", text.replace('_', ""))
     } else if bad.starts_with(['e', 'E']) && bad.len() == 1 {
         format!("an exponent needs digits: `{good}e3`")
-    } else if bad.starts_with(is_word_start) {
+    } else if bad.starts_with(is_word_start) && good != "0" {
         format!("a product needs its sign, `{good}*{bad}`, and a unit its brackets, `{good} [{bad}]`")
     } else {
         "numbers look like `1`, `1.5` or `1.5e-3`".to_string()

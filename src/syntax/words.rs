@@ -53,6 +53,7 @@ pub const NAMES: [Rule; 4] = [Rule::name, Rule::formal, Rule::variable, Rule::ty
 /// The keywords with which a rule begins, if it does.
 pub fn words_that_begin(rule: Rule) -> Vec<String> {
     let words: &[&str] = match rule {
+        Rule::file => &["import", "param", "let", "fn", "agent", "interaction", "system", "property", "run"],
         Rule::import => &["import"],
         Rule::param => &["param"],
         Rule::definition => &["let"],
@@ -94,6 +95,7 @@ fn keyword(rule: Rule) -> Option<String> {
 /// What fits a rule, in words; none for what is not worth saying.
 pub fn in_words(rule: Rule) -> Vec<String> {
     let words = match rule {
+        Rule::file => "an item such as `param`, `agent`, `system` or `run`",
         Rule::EOI => "the end of the file",
         Rule::name | Rule::value_name | Rule::formal | Rule::variable | Rule::equation | Rule::instance => {
             "a name"

@@ -209,9 +209,7 @@ impl Printer {
 
     fn actions(&mut self, actions: &Actions) {
         match actions.actions.as_slice() {
-            [Action { kind: ActionKind::If { .. }, .. }] => {
-                self.block(&actions.actions, |p, each| p.line(|p| p.action(each)))
-            }
+            [Action { kind: ActionKind::If { .. }, .. }] => self.lines(actions),
             [single] => {
                 self.put("{ ");
                 self.action(single);
@@ -262,12 +260,17 @@ impl Printer {
         for (k, branch) in branches.iter().enumerate() {
             self.word_and(if k > 0 { " else if " } else { "if " }, &branch.condition);
             self.put(" ");
-            self.actions(&branch.actions);
+            self.lines(&branch.actions);
         }
         if let Some(actions) = otherwise {
             self.put(" else ");
-            self.actions(actions);
+            self.lines(actions);
         }
+    }
+
+    /// Actions with a line for each.
+    fn lines(&mut self, actions: &Actions) {
+        self.block(&actions.actions, |p, each| p.line(|p| p.action(each)));
     }
 
     fn interaction_item(&mut self, item: &InteractionItem) {

@@ -1,0 +1,7 @@
+let x = a + b)
+// ----
+agent A { }
+}
+// ----
+agent A { state x }
+}

@@ -1,0 +1,2 @@
+param data: string = "cars.csv
+let x = 3

@@ -1,0 +1,7 @@
+let x = f(a = 3)
+// ----
+system { a = Car(3, 4) }
+// ----
+system { a = Car(v) }
+// ----
+system { a = Car[3](v = 3, w) }
