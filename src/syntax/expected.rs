@@ -184,6 +184,9 @@ impl Failure<'_> {
     fn looks_like(&self, k: Option<usize>, words: &[String]) -> Option<(usize, String)> {
         let k = k.filter(|&k| self.is_word(k) && !is_reserved(self.token(Some(k))))?;
         let name = self.token(Some(k));
+        if name.len() < 3 {
+            return None;
+        }
         let distance = |word: &String| (strsim::osa_distance(name, word), !word.starts_with(&name[..1]));
         let nearest = words.iter().min_by_key(|word| distance(word))?;
         let near = if name.len() > 4 { 2 } else { 1 };
@@ -247,26 +250,39 @@ impl Failure<'_> {
             words.retain(|word| !suffixes.contains(&word.as_str()));
         }
         if words.len() > 1 {
-            words.retain(|word| word != OPERATOR);
+            words.retain(|word| word != OPERATOR && word != "a unit");
         }
         let begins = |word: &String| STATEMENTS.iter().any(|keyword| *word == format!("`{keyword}`"));
         if words.iter().filter(|word| begins(word)).count() > 3 {
-            words.retain(|word| !begins(word) && word != "`:`");
+            words.retain(|word| !begins(word) && (word != "`:`" || self.fits(Rule::kw_by)));
             words.insert(0, "a statement".to_string());
         }
         words
     }
 
+    /// What to type, for mistakes that come from other languages or from elsewhere in this one.
     fn help(&self) -> Option<String> {
-        match self.found() {
-            "{" if self.fits(Rule::kw_then) => {
-                Some("in an expression write `if c then a else b`".to_string())
+        let help = match self.found() {
+            "{" if self.fits(Rule::kw_then) => "in an expression write `if c then a else b`",
+            "then" if self.fits(Rule::arrow) => {
+                "actions stand in braces behind the condition: `when c { ... }`"
             }
-            "then" => Some("among actions write `if c { ... } else { ... }`".to_string()),
-            ":=" => Some("actions stand in braces: `{ x := 3 }`".to_string()),
-            "," if self.fits(Rule::close_brace) => Some("statements need no separator".to_string()),
-            "not" => Some("put the condition in parentheses: `(not p)`".to_string()),
-            _ => None,
-        }
+            "then" => "among actions write `if c { ... } else { ... }`",
+            "'" if self.before(1) == "'" => "a flow gives first rates: write `x' = v` and `v' = ...`",
+            "'" => "rates stand in a flow: `flow { x' = ... }`",
+            "(" if matches!(self.before(1), "sum" | "count") => {
+                "this ranges over agents: `sum o in Car: o.x`"
+            }
+            "(" if self.opener().is_some_and(|open| open > 0 && self.token(Some(open - 1)) == "system") => {
+                "an instance has a name: `car = Car(...)`"
+            }
+            "=" if self.fits(Rule::kw_to) => "a setting has no sign: `tolerance 1e-6`",
+            "," if self.fits(Rule::close_brace) => "statements need no separator",
+            "not" => "put the condition in parentheses: `(not p)`",
+            ":=" => "actions stand in braces: `{ x := 3 }`",
+            _ if self.token(Some(self.found + 1)) == ":=" => "actions stand in braces: `{ x := 3 }`",
+            _ => return None,
+        };
+        Some(help.to_string())
     }
 }

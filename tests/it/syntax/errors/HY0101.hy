@@ -33,3 +33,49 @@ system { a = A, b = B }
 let
 // ----
 3
+// ----
+system { a = Car(v = 4, ) }
+// ----
+agent A { flow { x' = 3, y' = 4 } }
+// ----
+agent A { when x > 0 -> }
+// ----
+agent A { initial Spiral { } }
+// ----
+agent A() { state x: [m] }
+// ----
+let x = if a then b
+// ----
+agent A { when x > 0 then x := 3 }
+// ----
+run { until 30 [s], tolerance 1e-3 }
+// ----
+run { record x every 3 to x.csv }
+// ----
+run { tolerance = 1e-3 }
+// ----
+let x = exists o in Car o.x > 0
+// ----
+let x = sum(1, 2)
+// ----
+agent A { state x = 1, 2 }
+// ----
+interaction I { }
+// ----
+agent A { when x > 0 { a.b.c := 3 } }
+// ----
+agent A { flow { x'' = 3 } }
+// ----
+agent A { x' = 3 }
+// ----
+system { Car(v = 3) }
+// ----
+let f(x) = 3
+// ----
+param x: real
+// ----
+let x = 3; y = 4
+// ----
+agent A { entry x := 3 }
+// ----
+function f(x: real) = 3
