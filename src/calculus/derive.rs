@@ -281,7 +281,7 @@ pub fn plus(graph: &mut Graph, a: NodeId, b: NodeId) -> NodeId {
     if graph.is_zero(b) {
         return a;
     }
-    if let (Node::Select(c, u, v), Node::Select(d, w, z)) = (graph.node(a), graph.node(b)) {
+    if let (Some([c, u, v]), Some([d, w, z])) = (as_choice(graph, a), as_choice(graph, b)) {
         let apart = (graph.is_zero(v) && graph.is_zero(w)) || (graph.is_zero(u) && graph.is_zero(z));
         let together = (graph.is_zero(v) && graph.is_zero(z)) || (graph.is_zero(u) && graph.is_zero(w));
         if c == d && (apart || together) {
@@ -346,6 +346,15 @@ pub fn over(graph: &mut Graph, a: NodeId, b: NodeId) -> NodeId {
     inside_branch(graph, a, b, over).unwrap_or_else(|| graph.binary(Op::Div, a, b))
 }
 
+/// Condition and branches of an `if`; a truth value is `if c then 1 else 0`.
+fn as_choice(graph: &mut Graph, id: NodeId) -> Option<[NodeId; 3]> {
+    match graph.node(id) {
+        Node::Select(c, u, v) => Some([c, u, v]),
+        node if node.op().is_some_and(Op::is_boolean) => Some([id, graph.number(1.0), graph.number(0.0)]),
+        _ => None,
+    }
+}
+
 /// `(if c then u else 0) * y` as `if c then u * y else 0`, flattened where u or the product is of that form again.
 fn inside_branch(
     graph: &mut Graph,
@@ -353,7 +362,7 @@ fn inside_branch(
     y: NodeId,
     combine: fn(&mut Graph, NodeId, NodeId) -> NodeId,
 ) -> Option<NodeId> {
-    let Node::Select(c, u, v) = graph.node(x) else { return None };
+    let [c, u, v] = as_choice(graph, x)?;
     let zero = graph.number(0.0);
     let (condition, inner) = if graph.is_zero(v) {
         (c, u)
@@ -363,9 +372,9 @@ fn inside_branch(
         return None;
     };
     let product = combine(graph, inner, y);
-    let (condition, product) = match graph.node(product) {
-        Node::Select(d, w, z) if graph.is_zero(z) => (graph.binary(Op::And, condition, d), w),
-        Node::Select(d, w, z) if graph.is_zero(w) => {
+    let (condition, product) = match as_choice(graph, product) {
+        Some([d, w, z]) if graph.is_zero(z) => (graph.binary(Op::And, condition, d), w),
+        Some([d, w, z]) if graph.is_zero(w) => {
             let opposite = graph.unary(Op::Not, d);
             (graph.binary(Op::And, condition, opposite), z)
         }

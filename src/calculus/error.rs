@@ -25,8 +25,6 @@ pub enum Error {
     ConditionTooDeep { limit: usize, span: Span },
     /// `if c then lead else none`, where c is known at run time only.
     ChoiceOfAgents { span: Span },
-    /// A flow that reads through a link that may be none.
-    FlowReadsNone { link: String, span: Span },
 }
 
 impl Error {
@@ -86,14 +84,6 @@ impl Error {
                     .label(span, "which agent this is depends on the state")
                     .help("choose between the values that are read from the agents")
             }
-            Error::FlowReadsNone { link, span } => Diagnostic::error(
-                "HY0311",
-                format!("a flow reads `{link}`, which may be none"),
-            )
-            .label(span, "has no value where the link is none")
-            .help(format!(
-                "write `if {link} then ... else ...`, or make the link a parameter, which is never none"
-            )),
         }
     }
 }

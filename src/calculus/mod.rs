@@ -44,3 +44,6 @@ pub fn derive(model: &Model) -> Result<System, Vec<Diagnostic>> {
     agents::number_declarations(&mut draft.types, &mut interactions);
     draft.finish(interactions)
 }
+
+#[cfg(test)]
+mod tests;
