@@ -2,7 +2,7 @@
 
 use crate::base::Span;
 use crate::calculus::build;
-use crate::calculus::condition::{Place, Sense};
+use crate::calculus::condition::Sense;
 use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
 use crate::calculus::frame::{AgentRef, Scope, Value};
@@ -52,7 +52,7 @@ fn steps(
 }
 
 fn test(draft: &mut Draft, scope: &mut Scope, condition: ExprId, name: &str) -> Result<Guard, Error> {
-    guard::guard(draft, scope, Place::Claim, condition, Sense::Positive, &format!("{name} if"))
+    guard::guard(draft, scope, condition, Sense::Positive, &format!("{name} if"))
 }
 
 /// A boolean that is no number (it has a quantifier) is assigned by a choice between true and false.

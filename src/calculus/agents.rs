@@ -2,7 +2,7 @@
 
 use crate::calculus::actions;
 use crate::calculus::build;
-use crate::calculus::condition::{Place, Sense};
+use crate::calculus::condition::Sense;
 use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
 use crate::calculus::flow;
@@ -95,7 +95,7 @@ fn claim(
         ClaimKind::Assert => "assert",
     };
     let name = format!("{name} {word}");
-    let violation = guard::guard(draft, &mut scope, Place::Claim, claim.condition, Sense::Negative, &name)?;
+    let violation = guard::guard(draft, &mut scope, claim.condition, Sense::Negative, &name)?;
     Ok(ClaimSystem { kind, frame: scope.frame, violation, message: claim.message.clone(), span: claim.span })
 }
 
@@ -181,7 +181,7 @@ fn trigger(
 ) -> Result<Trigger, Error> {
     let name = format!("{label} guard");
     let guard = |draft: &mut Draft, scope: &mut Scope, guard: ExprId| {
-        guard::guard(draft, scope, Place::Guard, guard, Sense::Positive, &name)
+        guard::guard(draft, scope, guard, Sense::Positive, &name)
     };
     Ok(match *trigger {
         ir::Trigger::When(condition) => Trigger::When(guard(draft, scope, condition)?),
@@ -228,8 +228,7 @@ fn recorded(draft: &mut Draft, ty: TypeId, declared: &Let, name: &str) -> Result
     let mut scope = Scope::of_self(ty);
     let boolean = draft.model.exprs[declared.value].ty == Type::Bool;
     let value = if boolean {
-        let place = Place::Claim;
-        LetValue::Condition(guard::guard(draft, &mut scope, place, declared.value, Sense::Positive, name)?)
+        LetValue::Condition(guard::guard(draft, &mut scope, declared.value, Sense::Positive, name)?)
     } else {
         LetValue::Number(number(draft, &mut scope, declared.value, name)?)
     };

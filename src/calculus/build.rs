@@ -140,8 +140,9 @@ fn step(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> Resul
             }
         }
         ExprKind::Quantifier { .. } => return Err(Error::QuantifierInNumber { span }.into()),
-        ExprKind::Rising(_) => return Err(Error::EventOutsideGuard { word: "rising", span }.into()),
-        ExprKind::Crossing(_) => return Err(Error::EventOutsideGuard { word: "crossing", span }.into()),
+        ExprKind::Rising(_) | ExprKind::Crossing(_) => {
+            unreachable!("the model lets these stand in guards only")
+        }
     };
     Ok(Value::Number(node))
 }

@@ -15,9 +15,9 @@ use crate::calculus::system::{Relation, Slot};
 use crate::math::Op;
 use crate::model::ir::{ExprId, ExprKind, Quantifier, Type};
 
-/// How many comparisons and tests one condition may have (HY0308).
+/// How many comparisons and tests one condition may have (HY0306).
 pub const PARTS_MAX: usize = 10_000;
-/// How deep `if`, quantifiers, lets and functions of a condition may be nested (HY0309).
+/// How deep `if`, quantifiers, lets and functions of a condition may be nested (HY0307).
 pub const DEPTH_MAX: usize = 500;
 
 /// A condition over nodes.
@@ -50,15 +50,6 @@ pub struct Range {
     pub other: bool,
 }
 
-/// Where a condition stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// In the guard of a transition, where `rising` and `crossing` have a meaning.
-    Guard,
-    /// Elsewhere.
-    Claim,
-}
-
 /// Whether a condition or its negation is lowered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sense {
@@ -78,20 +69,13 @@ impl Sense {
 }
 
 /// Lowers a boolean expression.
-pub fn lower(
-    draft: &mut Draft,
-    scope: &mut Scope,
-    place: Place,
-    expr: ExprId,
-    sense: Sense,
-) -> Result<Cond, Error> {
-    Lowering { draft, scope, place, parts: 0, depth: 0, quantifiers: 0 }.lower(Scope::TOP, expr, sense)
+pub fn lower(draft: &mut Draft, scope: &mut Scope, expr: ExprId, sense: Sense) -> Result<Cond, Error> {
+    Lowering { draft, scope, parts: 0, depth: 0, quantifiers: 0 }.lower(Scope::TOP, expr, sense)
 }
 
 struct Lowering<'d, 'm> {
     draft: &'d mut Draft<'m>,
     scope: &'d mut Scope,
-    place: Place,
     parts: usize,
     depth: usize,
     quantifiers: usize,
@@ -284,25 +268,14 @@ impl Lowering<'_, '_> {
     }
 
     fn rising(&mut self, env: EnvId, condition: ExprId, sense: Sense, span: Span) -> Result<Cond, Error> {
-        self.event_allowed("rising", sense, span)?;
-        if self.quantifiers > 0 {
-            return Err(Error::RisingQuantified { span });
-        }
+        not_negated("rising", sense, span)?;
         Ok(Cond::Rising(Box::new(self.lower(env, condition, Sense::Positive)?)))
     }
 
     fn crossing(&mut self, env: EnvId, e: ExprId, sense: Sense, span: Span) -> Result<Cond, Error> {
-        self.event_allowed("crossing", sense, span)?;
+        not_negated("crossing", sense, span)?;
         let g = self.number(env, e)?;
         self.atom(Relation::Crossing, g, span)
-    }
-
-    fn event_allowed(&self, word: &'static str, sense: Sense, span: Span) -> Result<(), Error> {
-        match (self.place, sense) {
-            (Place::Claim, _) => Err(Error::EventOutsideGuard { word, span }),
-            (Place::Guard, Sense::Negative) => Err(Error::EventNegated { word, span }),
-            (Place::Guard, Sense::Positive) => Ok(()),
-        }
     }
 
     fn comparison(
@@ -449,6 +422,14 @@ impl Lowering<'_, '_> {
     fn count(&mut self, span: Span) -> Result<(), Error> {
         self.parts += 1;
         if self.parts > PARTS_MAX { Err(Error::ConditionTooLarge { limit: PARTS_MAX, span }) } else { Ok(()) }
+    }
+}
+
+/// An event holds at an instant; its negation would hold nearly always.
+fn not_negated(word: &'static str, sense: Sense, span: Span) -> Result<(), Error> {
+    match sense {
+        Sense::Positive => Ok(()),
+        Sense::Negative => Err(Error::EventNegated { word, span }),
     }
 }
 

@@ -7,12 +7,8 @@ use crate::base::{Diagnostic, Span};
 pub enum Error {
     /// `exists` or `forall` where a number is computed.
     QuantifierInNumber { span: Span },
-    /// `rising` or `crossing` outside a guard.
-    EventOutsideGuard { word: &'static str, span: Span },
     /// `not rising(..)`, `not crossing(..)`.
     EventNegated { word: &'static str, span: Span },
-    /// `rising` below a quantifier.
-    RisingQuantified { span: Span },
     /// x' that is computed from itself.
     RateCircle { span: Span },
     /// The rate of another agent in a flow.
@@ -38,49 +34,39 @@ impl Error {
                         "use it in a guard, in an `if` of actions, or assign it to a `discrete` of type bool",
                     )
             }
-            Error::EventOutsideGuard { word, span } => {
-                Diagnostic::error("HY0302", format!("`{word}` outside the guard of a transition"))
-                    .label(span, "true at an instant, not over a stretch of time")
-                    .help("write it in a `when`")
-            }
             Error::EventNegated { word, span } => {
-                Diagnostic::error("HY0303", format!("`{word}` cannot be negated"))
+                Diagnostic::error("HY0302", format!("`{word}` cannot be negated"))
                     .label(span, "true at an instant, so its negation holds nearly always")
                     .help("negate the condition inside it")
             }
-            Error::RisingQuantified { span } => {
-                Diagnostic::error("HY0304", "`rising` below a quantifier is not supported yet")
-                    .label(span, "would need a memory for every agent of the set")
-                    .help("write `rising(exists ...)`, which has one memory")
-            }
-            Error::RateCircle { span } => Diagnostic::error("HY0305", "a rate that is computed from itself")
+            Error::RateCircle { span } => Diagnostic::error("HY0303", "a rate that is computed from itself")
                 .label(span, "needs its own value")
                 .help("solve the equations for the rates by hand"),
             Error::ForeignRate { span } => {
-                Diagnostic::error("HY0306", "the rate of another agent in a flow is not supported yet")
+                Diagnostic::error("HY0304", "the rate of another agent in a flow is not supported yet")
                     .label(span, "a rate, not a state")
                     .help("write the other agent's equation in its place")
             }
             Error::TooManySlots { limit, span } => {
-                Diagnostic::error("HY0307", "an expression that reaches too many agents")
+                Diagnostic::error("HY0305", "an expression that reaches too many agents")
                     .label(span, "one more than can be read together")
                     .note(format!("the limit is {limit} agents bound by quantifiers or reached by links"))
                     .help("does a `let` read the same `let` through a link, without end?")
             }
             Error::ConditionTooLarge { limit, span } => {
-                Diagnostic::error("HY0308", "a condition that becomes too large")
+                Diagnostic::error("HY0306", "a condition that becomes too large")
                     .label(span, "once lets and functions are put in")
                     .note(format!("the limit is {limit} comparisons and tests"))
                     .help("keep what is used several times in a `discrete`, or split the transition")
             }
             Error::ConditionTooDeep { limit, span } => {
-                Diagnostic::error("HY0309", "a condition that becomes too deeply nested")
+                Diagnostic::error("HY0307", "a condition that becomes too deeply nested")
                     .label(span, "once lets and functions are put in")
                     .note(format!("the limit is {limit} levels"))
                     .help("shorten the chain of lets or functions that it goes through")
             }
             Error::ChoiceOfAgents { span } => {
-                Diagnostic::error("HY0310", "a choice between agents is not supported yet")
+                Diagnostic::error("HY0308", "a choice between agents is not supported yet")
                     .label(span, "which agent this is depends on the state")
                     .help("choose between the values that are read from the agents")
             }

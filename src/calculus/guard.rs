@@ -1,7 +1,7 @@
 //! From a condition over nodes to a guard: atoms numbered, each with its rates, all as functions.
 
 use crate::base::Span;
-use crate::calculus::condition::{self, Cond, Place, Sense};
+use crate::calculus::condition::{self, Cond, Sense};
 use crate::calculus::derive;
 use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
@@ -16,12 +16,11 @@ use crate::model::ir::{ExprId, Quantifier};
 pub fn guard(
     draft: &mut Draft,
     scope: &mut Scope,
-    place: Place,
     expr: ExprId,
     sense: Sense,
     name: &str,
 ) -> Result<Guard, Error> {
-    let cond = condition::lower(draft, scope, place, expr, sense)?;
+    let cond = condition::lower(draft, scope, expr, sense)?;
     Ok(finish(draft, &scope.frame, cond, name))
 }
 

@@ -1,6 +1,6 @@
 //! Is a condition in normal form true exactly where the source is?
 
-use crate::calculus::condition::{self, Cond, Place, Sense};
+use crate::calculus::condition::{self, Cond, Sense};
 use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
 use crate::calculus::evaluate;
@@ -45,9 +45,8 @@ fn the_normal_form_is_true_where_the_source_is() {
         let expr = random::condition(&mut model, &mut random, &ops, depth);
         let mut draft = Draft::new(&model);
         let mut scope = Scope::of_self(TypeId::new(0));
-        let [plain, negated] = [Sense::Positive, Sense::Negative].map(|sense| {
-            condition::lower(&mut draft, &mut scope, Place::Guard, expr, sense).expect("no quantifiers")
-        });
+        let [plain, negated] = [Sense::Positive, Sense::Negative]
+            .map(|sense| condition::lower(&mut draft, &mut scope, expr, sense).expect("no quantifiers"));
         for _ in 0..6 {
             let at = point(&mut random);
             let expected = random::naive(&model, expr, &at, &[]);
@@ -89,14 +88,12 @@ fn distances_are_compared_by_their_squares() {
     let far = random::push(&mut model, ExprKind::Apply(Op::Lt, vec![param, distance]), Type::Bool);
     let mut draft = Draft::new(&model);
     let mut scope = Scope::of_self(TypeId::new(0));
-    let near =
-        condition::lower(&mut draft, &mut scope, Place::Guard, near, Sense::Positive).expect("a comparison");
+    let near = condition::lower(&mut draft, &mut scope, near, Sense::Positive).expect("a comparison");
     let Cond::Atom(Relation::NonPositive, g, _) = near else { panic!("one atom: {near:?}") };
     let roots =
         draft.graph.reach(&[g]).iter().filter(|&&id| draft.graph.node(id).op() == Some(Op::Hypot)).count();
     assert_eq!(roots, 0);
-    let far =
-        condition::lower(&mut draft, &mut scope, Place::Guard, far, Sense::Positive).expect("a comparison");
+    let far = condition::lower(&mut draft, &mut scope, far, Sense::Positive).expect("a comparison");
     for (param, states, expected) in
         [(-1.0, [0.0, 0.0], true), (5.0, [3.0, 4.0], false), (4.0, [3.0, 4.0], true)]
     {
@@ -137,5 +134,5 @@ fn conditions_have_limits_and_chains_do_not_count_as_depth() {
 fn lower(model: &Model, expr: crate::model::ir::ExprId) -> Result<Cond, Error> {
     let mut draft = Draft::new(model);
     let mut scope = Scope::of_self(TypeId::new(0));
-    condition::lower(&mut draft, &mut scope, Place::Guard, expr, Sense::Positive)
+    condition::lower(&mut draft, &mut scope, expr, Sense::Positive)
 }
