@@ -403,6 +403,18 @@ pub struct Population {
     pub agents: Vec<Instance>,
 }
 
+impl Population {
+    /// The path of an agent: `fast`, `cars[3]`.
+    pub fn agent_name(&self, agent: usize) -> String {
+        let after = self.blocks.partition_point(|block| block.first <= agent);
+        match self.blocks[..after].last() {
+            Some(block) if block.array => format!("{}[{}]", block.name, agent - block.first),
+            Some(block) => block.name.clone(),
+            None => format!("#{agent}"),
+        }
+    }
+}
+
 /// `name = Type[count](...)`.
 #[derive(Clone, Debug)]
 pub struct Block {

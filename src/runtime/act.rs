@@ -1,0 +1,388 @@
+//! Actions: what transitions would write is computed on the rows before; then it is written.
+
+use crate::base::Span;
+use crate::codegen::program::{ActionList, ActionStep, Layout, Target, TransitionSystem};
+use crate::runtime::advance::cut;
+use crate::runtime::engine::{Engine, StopRequest};
+use crate::runtime::failure::{Failure, Reason};
+use crate::runtime::guards::Origin;
+use crate::runtime::population::{ABSENT, Slots};
+use crate::runtime::present::Depth;
+use crate::runtime::truth;
+
+/// A value for a column of an agent.
+#[derive(Clone, Copy, Debug)]
+pub struct Write {
+    /// Whose.
+    pub agent: usize,
+    /// Which column.
+    pub target: Target,
+    /// Its value; the number of a leaf for a mode.
+    pub value: f64,
+    /// The assignment.
+    pub span: Span,
+}
+
+/// A change of mode of one agent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Move {
+    /// Who.
+    pub agent: usize,
+    /// The leaf it is in.
+    pub from: usize,
+    /// The leaf it goes to.
+    pub to: usize,
+    /// The modes left, inner first.
+    pub left: Vec<usize>,
+    /// The modes entered, outer first.
+    pub entered: Vec<usize>,
+}
+
+/// All that one firing does, computed before anything is written.
+#[derive(Clone, Debug, Default)]
+pub struct Effect {
+    /// Writes of exit and transition actions, in order.
+    pub writes: Vec<Write>,
+    /// Changes of mode.
+    pub moves: Vec<Move>,
+}
+
+/// What has been written in a micro-step.
+#[derive(Clone, Debug, Default)]
+pub struct Written {
+    /// Agents of which a column was written, with their states and columns before.
+    pub before: Vec<(usize, Vec<f64>, Vec<f64>)>,
+    /// Agents whose future has changed: written ones and those in a group or on an input with them.
+    pub restarted: Vec<usize>,
+    /// Changes of mode.
+    pub moves: Vec<Move>,
+}
+
+impl Engine<'_, '_> {
+    /// The effect of a transition of an instance, read from the rows of the present instant.
+    pub fn effect(&mut self, instance: u32, slots: &Slots) -> Result<Effect, Failure> {
+        let (transition, pair) = match self.guards.definition(instance).origin {
+            Origin::Transition(transition) => (transition, false),
+            Origin::Pair(pair) => (&pair.transition, true),
+            Origin::Claim(_) => return Ok(Effect::default()),
+        };
+        let mut effect = Effect::default();
+        if let Some(target) = transition.target
+            && !pair
+        {
+            let change = self.route(slots[0], transition.source, target);
+            self.exit(&change, &mut effect)?;
+            effect.moves.push(change);
+        }
+        self.run_list(&transition.actions, slots, &transition.label, &mut effect)?;
+        Ok(effect)
+    }
+
+    /// The change of mode of an agent by a transition from `source` to `target`.
+    fn route(&self, agent: usize, source: usize, target: usize) -> Move {
+        let modes = &self.program.types[self.agents.agents[agent].ty].modes;
+        let above = |mode: usize| std::iter::successors(Some(mode), |&mode| modes[mode].parent);
+        let scope = if source == 0 {
+            0
+        } else {
+            let outside: Vec<usize> = above(source).skip(1).collect();
+            above(target).skip(1).find(|mode| outside.contains(mode)).unwrap_or(0)
+        };
+        let from = self.agents.agents[agent].mode;
+        let to = modes[target].initial_leaf;
+        let left = above(from).take_while(|&mode| mode != scope).collect();
+        let mut entered: Vec<usize> = above(to).take_while(|&mode| mode != scope).collect();
+        entered.reverse();
+        Move { agent, from, to, left, entered }
+    }
+
+    fn exit(&mut self, change: &Move, effect: &mut Effect) -> Result<(), Failure> {
+        let ty = self.agents.agents[change.agent].ty;
+        for &mode in &change.left {
+            let node = &self.program.types[ty].modes[mode];
+            let slots = self.agents.slots(&node.exit.frame, &[change.agent]);
+            self.run_list(&node.exit, &slots, &node.path, effect)?;
+        }
+        Ok(())
+    }
+
+    fn run_list(
+        &mut self,
+        list: &ActionList,
+        slots: &Slots,
+        by: &str,
+        effect: &mut Effect,
+    ) -> Result<(), Failure> {
+        self.run_steps(list, &list.steps, slots, by, effect)
+    }
+
+    fn run_steps(
+        &mut self,
+        list: &ActionList,
+        steps: &[ActionStep],
+        slots: &Slots,
+        by: &str,
+        effect: &mut Effect,
+    ) -> Result<(), Failure> {
+        for step in steps {
+            match step {
+                ActionStep::Assign { slot, target, value, span } => {
+                    let value = truth::value(&self.agents, &mut self.present, *value, slots);
+                    let write = Write { agent: slots[*slot], target: *target, value, span: *span };
+                    if !value.is_finite() {
+                        return Err(self.action_not_finite(&write).into());
+                    }
+                    effect.writes.push(write);
+                }
+                ActionStep::If { condition, then, otherwise } => {
+                    let holds = truth::test(&self.agents, &mut self.present, condition, &list.frame, slots);
+                    self.run_steps(list, if holds { then } else { otherwise }, slots, by, effect)?;
+                }
+                ActionStep::Goto { slot, target, .. } => {
+                    let change = self.route(slots[*slot], 0, *target);
+                    self.exit(&change, effect)?;
+                    effect.moves.push(change);
+                }
+                ActionStep::Stop { reason, .. } => {
+                    let request = StopRequest { reason: reason.clone(), agent: slots[0], by: by.to_string() };
+                    self.stop.get_or_insert(request);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn action_not_finite(&mut self, write: &Write) -> Reason {
+        let system = &self.program.types[self.agents.agents[write.agent].ty];
+        let variable = match write.target {
+            Target::State(k) => system.states[k].name.clone(),
+            Target::Aux(column) => system.discretes[column - system.layout.discrete(0)].name.clone(),
+            Target::Mode => "mode".into(),
+        };
+        Reason::ActionNotFinite {
+            place: self.place(write.agent),
+            variable,
+            value: write.value,
+            span: write.span,
+        }
+    }
+
+    /// Writes the effects of a micro-step, then runs and writes the entry actions, outer modes first.
+    pub fn carry_out(&mut self, effects: &[Effect]) -> Result<Written, Failure> {
+        let mut written = Written::default();
+        for effect in effects {
+            for write in &effect.writes {
+                self.write(write, &mut written);
+            }
+            for change in &effect.moves {
+                self.enter_mode(change, &mut written);
+            }
+        }
+        self.present.forget();
+        for effect in effects {
+            for change in &effect.moves {
+                self.run_entries(change.agent, &change.entered, &mut written)?;
+                written.moves.push(change.clone());
+            }
+        }
+        self.regroup(&mut written);
+        self.set_locks(&written.restarted);
+        Ok(written)
+    }
+
+    /// Entry actions of modes, each reading what the ones before it wrote.
+    pub fn run_entries(
+        &mut self,
+        agent: usize,
+        entered: &[usize],
+        written: &mut Written,
+    ) -> Result<(), Failure> {
+        let ty = self.agents.agents[agent].ty;
+        for &mode in entered {
+            let node = &self.program.types[ty].modes[mode];
+            if node.entry.steps.is_empty() {
+                continue;
+            }
+            let slots = self.agents.slots(&node.entry.frame, &[agent]);
+            let mut effect = Effect::default();
+            self.run_list(&node.entry, &slots, &node.path, &mut effect)?;
+            for write in &effect.writes {
+                self.write(write, written);
+            }
+            self.present.forget();
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, write: &Write, written: &mut Written) {
+        self.remember(write.agent, written);
+        match write.target {
+            Target::State(k) => {
+                self.restart(write.agent, written);
+                self.agents.agents[write.agent].states[k] = write.value;
+            }
+            Target::Aux(column) => {
+                self.restart_readers(write.agent, column, written);
+                self.agents.agents[write.agent].aux[column] = write.value;
+            }
+            Target::Mode => {}
+        }
+    }
+
+    fn enter_mode(&mut self, change: &Move, written: &mut Written) {
+        self.remember(change.agent, written);
+        self.restart(change.agent, written);
+        self.restart_readers(change.agent, Layout::MODE, written);
+        let time = self.present.time;
+        let agent = &mut self.agents.agents[change.agent];
+        agent.mode = change.to;
+        agent.aux[Layout::MODE] = change.to as f64;
+        agent.aux[Layout::ENTRY] = time;
+    }
+
+    /// Keeps an agent's rows as they were before this micro-step.
+    fn remember(&mut self, agent: usize, written: &mut Written) {
+        if written.before.iter().any(|(other, _, _)| *other == agent) {
+            return;
+        }
+        self.present.make(&self.agents, &[agent], Depth::States);
+        let aux = self.agents.agents[agent].aux.clone();
+        written.before.push((agent, self.present.states(agent).to_vec(), aux));
+    }
+
+    /// Ends the past of an agent's group here: its segments are cut, its next step begins afresh.
+    fn restart(&mut self, agent: usize, written: &mut Written) {
+        if written.restarted.contains(&agent) {
+            return;
+        }
+        let number = self.agents.agents[agent].group;
+        let time = self.present.time;
+        let group = &mut self.groups.groups[number];
+        if group.clock > time && group.clock < f64::INFINITY {
+            self.n_cuts += group.members.len() as u64;
+        }
+        cut(&mut self.agents, group, time);
+        written.restarted.extend_from_slice(&group.members);
+        self.queue_clock(number);
+    }
+
+    /// Restarts the agents whose flow reads an auxiliary column of `agent`.
+    fn restart_readers(&mut self, agent: usize, column: usize, written: &mut Written) {
+        for reader in self.agents.readers(agent) {
+            let flow = self.agents.flow(reader);
+            let slots = self.agents.slots(&flow.frame, &[reader]);
+            let reads = &self.program.kernel(flow.rates).reads().slots;
+            let reads_it = reads.iter().zip(&slots).any(|(reads, &slot)| slot == agent && reads.aux > column);
+            if reads_it && agent != ABSENT {
+                self.restart(reader, written);
+            }
+        }
+    }
+
+    /// Divides the groups of agents that changed their mode anew (rule 13).
+    fn regroup(&mut self, written: &mut Written) {
+        if written.moves.is_empty() {
+            return;
+        }
+        let mut concerned: Vec<usize> = Vec::new();
+        for change in &written.moves {
+            let mut with = vec![change.agent];
+            with.extend(crate::runtime::groups::couples(&self.agents, change.agent));
+            for agent in with {
+                let group = self.agents.agents[agent].group;
+                if !concerned.contains(&group) {
+                    concerned.push(group);
+                }
+            }
+        }
+        let alone = |group: &usize| self.groups.groups[*group].members.len() == 1;
+        if concerned.iter().all(alone) && concerned.len() == written.moves.len() {
+            let coupled = written
+                .moves
+                .iter()
+                .any(|change| !crate::runtime::groups::couples(&self.agents, change.agent).is_empty());
+            if !coupled {
+                return;
+            }
+        }
+        let mut members: Vec<usize> = Vec::new();
+        for &group in &concerned {
+            members.extend_from_slice(&self.groups.groups[group].members);
+        }
+        for &agent in &members {
+            self.restart(agent, written);
+        }
+        let time = self.present.time;
+        let mut steps: rustc_hash::FxHashMap<usize, Option<f64>> = rustc_hash::FxHashMap::default();
+        for &agent in &members {
+            steps.insert(agent, self.groups.groups[self.agents.agents[agent].group].h);
+        }
+        for &group in &concerned {
+            self.groups.dissolve(group);
+        }
+        let made = self
+            .groups
+            .divide(&mut self.agents, &members, time, &|agent| steps.get(&agent).copied().flatten());
+        for group in made {
+            self.queue_clock(group);
+        }
+    }
+
+    /// Sets the locks of the kinks of these agents' flows from their states.
+    pub fn set_locks(&mut self, agents: &[usize]) {
+        self.present.forget();
+        for &agent in agents {
+            let flow = self.agents.flow(agent);
+            for kink in &flow.kinks {
+                let slots = self.agents.slots(&flow.frame, &[agent]);
+                let lock = truth::value(&self.agents, &mut self.present, kink.initial, &slots);
+                self.agents.agents[agent].aux[kink.lock] = lock;
+            }
+        }
+        self.present.forget();
+    }
+}
+
+/// The columns that a firing may write: exit, transition and entry actions together, both branches of an `if`; its mode
+/// stands for the region (rule 4).
+pub fn claims(engine: &Engine<'_, '_>, instance: u32, slots: &Slots) -> Vec<(usize, Target)> {
+    let mut claims = Vec::new();
+    let (transition, pair): (&TransitionSystem, bool) = match engine.guards.definition(instance).origin {
+        Origin::Transition(transition) => (transition, false),
+        Origin::Pair(pair) => (&pair.transition, true),
+        Origin::Claim(_) => return claims,
+    };
+    claims.extend(transition.actions.writes.iter().map(|&(slot, target)| (slots[slot], target)));
+    let mut moves = Vec::new();
+    if !pair {
+        claims.push((slots[0], Target::Mode));
+        moves.extend(transition.target.map(|target| engine.route(slots[0], transition.source, target)));
+    } else {
+        gotos(&transition.actions.steps, &mut |slot, target| {
+            moves.push(engine.route(slots[slot], 0, target))
+        });
+    }
+    for change in moves {
+        claims.push((change.agent, Target::Mode));
+        let modes = &engine.program.types[engine.agents.agents[change.agent].ty].modes;
+        let lists = change.left.iter().map(|&mode| &modes[mode].exit);
+        for list in lists.chain(change.entered.iter().map(|&mode| &modes[mode].entry)) {
+            claims.extend(list.writes.iter().map(|&(_, target)| (change.agent, target)));
+        }
+    }
+    claims
+}
+
+/// Calls `visit` with every change of mode in some actions.
+fn gotos(steps: &[ActionStep], visit: &mut dyn FnMut(usize, usize)) {
+    for step in steps {
+        match step {
+            ActionStep::Goto { slot, target, .. } => visit(*slot, *target),
+            ActionStep::If { then, otherwise, .. } => {
+                gotos(then, visit);
+                gotos(otherwise, visit);
+            }
+            ActionStep::Assign { .. } | ActionStep::Stop { .. } => {}
+        }
+    }
+}

@@ -1,0 +1,341 @@
+//! Arming, settling and waking (rules 2, 3 and 14): which guards look at the present instant afresh, and what they find.
+
+use smallvec::SmallVec;
+
+use crate::codegen::kernel::{AgentBox, AgentView, Kernel};
+use crate::codegen::program::{Relation, Trigger};
+use crate::math::Interval;
+use crate::runtime::act::Written;
+use crate::runtime::engine::{Due, Engine};
+use crate::runtime::failure::{Failure, Reason};
+use crate::runtime::guards::{Origin, closed, inside};
+use crate::runtime::population::{ABSENT, Slots};
+use crate::runtime::present::Depth;
+use crate::runtime::solve::{time_resolution, ulp};
+use crate::runtime::truth::{self, Side, Truths};
+
+/// How an atom that lies on its boundary is settled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// At t = 0: `<=` is true on the boundary; nothing is held.
+    Fresh,
+    /// Armed by a transition into its mode, or just fired: the rates decide (rule 3).
+    Rates,
+    /// Something it reads was written.
+    Woken,
+}
+
+impl<'p> Engine<'p, '_> {
+    /// Reads the truths of atoms at the present instant.
+    pub fn truths(&self) -> Truths<'_, 'p> {
+        Truths { agents: &self.agents, guards: &self.guards, present: &self.present }
+    }
+
+    /// Arms an instance, whose mode has just been entered.
+    pub fn arm(&mut self, instance: u32, rule: Rule) -> Result<(), Failure> {
+        let time = self.present.time;
+        let state = &mut self.guards.instances[instance as usize];
+        state.active = true;
+        state.armed = true;
+        state.aged = false;
+        state.arming += 1;
+        state.entry = time;
+        state.periods = 0;
+        for index in self.guards.atom_range(instance) {
+            self.guards.atoms[index].slack = 0.0;
+            self.settle(index, rule, &Written::default());
+        }
+        let first = self.guards.instances[instance as usize].rising as usize;
+        let n_rising = self.guards.definition(instance).n_rising;
+        self.guards.rising[first..first + n_rising].fill(false);
+        self.note_rising(instance);
+        self.set_schedule(instance)
+    }
+
+    /// Takes an instance out, whose mode has just been left.
+    fn disarm(&mut self, instance: u32) {
+        let state = &mut self.guards.instances[instance as usize];
+        state.active = false;
+        state.armed = false;
+        state.arming += 1;
+        for index in self.guards.atom_range(instance) {
+            self.guards.atoms[index].version += 1;
+        }
+    }
+
+    /// Notes which conditions of `rising` are false now.
+    pub fn note_rising(&mut self, instance: u32) {
+        if self.guards.definition(instance).n_rising > 0 {
+            for flag in self.truths().seen_false(instance) {
+                self.guards.rising[flag] = true;
+            }
+        }
+    }
+
+    /// Reads the delay or period of an instance that is being armed, and puts its first time into the queue.
+    fn set_schedule(&mut self, instance: u32) -> Result<(), Failure> {
+        let transition = match self.guards.definition(instance).origin {
+            Origin::Transition(transition) => transition,
+            Origin::Pair(pair) => &pair.transition,
+            Origin::Claim(_) => return Ok(()),
+        };
+        let (function, least) = match &transition.trigger {
+            Trigger::When(_) => return Ok(()),
+            Trigger::After { delay, .. } => (*delay, 0.0),
+            Trigger::Every { period, .. } => (*period, f64::MIN_POSITIVE),
+        };
+        let slots = self.guards.slots(&self.agents, instance);
+        let value = truth::value(&self.agents, &mut self.present, function, &slots);
+        if !(value >= least && value < f64::INFINITY) {
+            let place = self.place(slots[0]);
+            return Err(Reason::BadDelay { place, value, span: transition.span }.into());
+        }
+        let state = &mut self.guards.instances[instance as usize];
+        state.delay = value;
+        if value == 0.0 {
+            state.aged = true;
+        } else {
+            self.queue_schedule(instance);
+        }
+        Ok(())
+    }
+
+    /// Puts the next time of an `after` or `every` into the queue; a time within 4 ulp of the end is the end (rule 11).
+    pub fn queue_schedule(&mut self, instance: u32) {
+        let state = &self.guards.instances[instance as usize];
+        let mut time = state.entry + (state.periods + 1) as f64 * state.delay;
+        if (time - self.time_end).abs() <= 4.0 * ulp(self.time_end) {
+            time = self.time_end;
+        }
+        self.queues.schedules.push(Due { time, number: instance, version: state.arming });
+    }
+
+    /// Finds the truth of an atom at the present instant, and has it certified from here on.
+    pub fn settle(&mut self, index: usize, rule: Rule, written: &Written) {
+        let (atom, slots) = self.guards.atom_slots(&self.agents, index);
+        let time = self.present.time;
+        let before = self.guards.atoms[index];
+        let absent = atom.slots.iter().any(|&slot| slots[slot] == ABSENT);
+        let kernel = self.program.kernel(atom.value);
+        self.curves.evaluations += 1;
+        let g = truth::value(&self.agents, &mut self.present, atom.value, &slots);
+        let mut touched = false;
+        let unchanged = rule == Rule::Woken && self.value_before(kernel, &slots, written) == Some(g);
+        let truth = if g.is_nan() || absent && !g.is_finite() {
+            false
+        } else if unchanged && before.rooted && before.certified == time {
+            touched = before.touched;
+            before.truth
+        } else {
+            let rounding = self.rounding(kernel, &slots);
+            let clear = g.abs() > if unchanged { before.slack.max(rounding) } else { rounding };
+            match rule {
+                Rule::Rates => self.decide(index, g, rounding, &slots),
+                Rule::Woken if unchanged && clear => before.truth,
+                Rule::Fresh | Rule::Woken if clear => g < 0.0,
+                Rule::Woken if unchanged => self.decide(index, g, rounding, &slots),
+                Rule::Fresh | Rule::Woken if atom.relation == Relation::Crossing => {
+                    self.decide(index, g, rounding, &slots)
+                }
+                Rule::Fresh | Rule::Woken => closed(atom.relation, false),
+            }
+        };
+        if atom.relation == Relation::Crossing && rule == Rule::Woken && truth != before.truth {
+            touched = true;
+        }
+        let state = &mut self.guards.atoms[index];
+        state.truth = truth;
+        state.touched = touched;
+        state.rooted = rule == Rule::Woken && before.rooted && unchanged;
+        self.recertify(index, time);
+    }
+
+    /// Has an atom certified from `time` on; what was found beyond is void.
+    pub fn recertify(&mut self, index: usize, time: f64) {
+        let state = &mut self.guards.atoms[index];
+        state.certified = time;
+        state.flip = f64::INFINITY;
+        state.version += 1;
+        self.queues.uncertified.push(Due { time, number: index as u32, version: state.version });
+    }
+
+    /// Rule 3, "On the boundary": by the first of two rates that is not zero within rounding.
+    fn decide(&mut self, index: usize, g: f64, rounding: f64, slots: &Slots) -> bool {
+        let (atom, _) = self.guards.atom_slots(&self.agents, index);
+        self.present.make(&self.agents, slots, Depth::Accelerations);
+        let kernel = self.program.kernel(atom.rates);
+        let mut jet = [0.0; 3];
+        kernel.eval(&self.present.views(&self.agents, slots), self.present.time, &mut jet);
+        let state = &mut self.guards.atoms[index];
+        let band = state.slack.max(jet[1].abs() * time_resolution(self.present.time)).max(rounding);
+        if g.abs() > band {
+            return g < 0.0;
+        }
+        state.slack = band;
+        let bounds = self.jet_rounding(kernel, slots);
+        for order in 1..3 {
+            if jet[order].abs() > bounds[order] {
+                return jet[order] < 0.0;
+            }
+        }
+        closed(atom.relation, self.guards.atoms[index].truth)
+    }
+
+    /// What rounding may do to the single output of a kernel on the present rows.
+    fn rounding(&mut self, kernel: &Kernel, slots: &Slots) -> f64 {
+        let mut out = [Interval::WHOLE];
+        self.point_range(kernel, slots, &mut out);
+        width(out[0])
+    }
+
+    fn jet_rounding(&mut self, kernel: &Kernel, slots: &Slots) -> [f64; 3] {
+        let mut out = [Interval::WHOLE; 3];
+        self.point_range(kernel, slots, &mut out);
+        out.map(width)
+    }
+
+    /// The outputs of a kernel with the present rows as intervals without width.
+    fn point_range(&mut self, kernel: &Kernel, slots: &Slots, out: &mut [Interval]) {
+        let views = self.present.views(&self.agents, slots);
+        let points =
+            |row: &[f64]| row.iter().map(|&v| Interval { lo: v, hi: v }).collect::<SmallVec<[Interval; 8]>>();
+        let rows: SmallVec<[[SmallVec<[Interval; 8]>; 3]; 4]> = views
+            .iter()
+            .map(|view| [points(view.states), points(view.rates), points(view.accelerations)])
+            .collect();
+        let boxes: SmallVec<[AgentBox<'_>; 6]> = rows
+            .iter()
+            .zip(&views)
+            .map(|(rows, view)| AgentBox {
+                states: &rows[0],
+                rates: &rows[1],
+                accelerations: &rows[2],
+                aux: view.aux,
+            })
+            .collect();
+        let time = Interval { lo: self.present.time, hi: self.present.time };
+        let mut registers = Vec::new();
+        kernel.range(&boxes, time, &mut registers, out);
+    }
+
+    /// The value of a kernel on the rows before the micro-step; none if a rate would be needed.
+    fn value_before(&self, kernel: &Kernel, slots: &Slots, written: &Written) -> Option<f64> {
+        if truth::depth_read(kernel) != Depth::States {
+            return None;
+        }
+        let mut views = self.present.views(&self.agents, slots);
+        for (view, &agent) in views.iter_mut().zip(slots) {
+            if let Some((_, states, aux)) = written.before.iter().find(|(other, _, _)| *other == agent) {
+                *view = AgentView { states, rates: &[], accelerations: &[], aux };
+            }
+        }
+        let mut out = [0.0];
+        kernel.eval(&views, self.present.time, &mut out);
+        Some(out[0])
+    }
+
+    /// Follows up what a micro-step wrote: arms and disarms, settles what reads a written agent, has recertified what
+    /// reads a restarted one. Returns the instances that may now fire, rising.
+    pub fn wake(&mut self, written: &Written) -> Result<Vec<u32>, Failure> {
+        let mut armed: Vec<u32> = Vec::new();
+        for change in &written.moves {
+            for instance in self.guards.of_agent[change.agent].clone() {
+                let definition = self.guards.definition(instance);
+                if definition.mode == 0 || matches!(definition.origin, Origin::Pair(_)) {
+                    continue;
+                }
+                if change.entered.contains(&definition.mode) {
+                    self.arm(instance, Rule::Rates)?;
+                    armed.push(instance);
+                } else if change.left.contains(&definition.mode) {
+                    self.disarm(instance);
+                }
+            }
+        }
+        let is_written = |agent: usize| written.before.iter().any(|(other, _, _)| *other == agent);
+        let mut concerned: Vec<usize> = written.before.iter().map(|(agent, _, _)| *agent).collect();
+        concerned.extend_from_slice(&written.restarted);
+        concerned.sort_unstable();
+        concerned.dedup();
+        let mut woken = Vec::new();
+        for instance in self.reading(&concerned) {
+            if !self.guards.instances[instance as usize].active {
+                continue;
+            }
+            let fresh = armed.contains(&instance);
+            for index in self.guards.atom_range(instance) {
+                let (atom, slots) = self.guards.atom_slots(&self.agents, index);
+                let read = |agent: usize| atom.slots.iter().any(|&slot| slots[slot] == agent);
+                if !fresh && concerned.iter().any(|&agent| is_written(agent) && read(agent)) {
+                    self.settle(index, Rule::Woken, written);
+                } else if concerned.iter().any(|&agent| read(agent)) {
+                    let until = self.guards.atoms[index].certified.min(self.present.time);
+                    self.recertify(index, until);
+                }
+            }
+            woken.push(instance);
+        }
+        for &instance in &woken {
+            self.note_rising(instance);
+        }
+        Ok(woken)
+    }
+
+    /// The instances that read any of these agents (or reach them by links), rising.
+    pub fn reading(&self, agents: &[usize]) -> Vec<u32> {
+        let mut instances = Vec::new();
+        for &agent in agents {
+            for reader in self.agents.readers(agent) {
+                instances.extend_from_slice(&self.guards.of_agent[reader]);
+            }
+            instances.extend_from_slice(&self.guards.over_type[self.agents.agents[agent].ty]);
+        }
+        instances.sort_unstable();
+        instances.dedup();
+        instances
+    }
+
+    /// Whether an instance would fire now.
+    pub fn enabled(&self, instance: u32) -> bool {
+        let state = &self.guards.instances[instance as usize];
+        if !(state.active && state.armed) {
+            return false;
+        }
+        let waits = match self.guards.definition(instance).origin {
+            Origin::Transition(transition) => &transition.trigger,
+            Origin::Pair(pair) => &pair.transition.trigger,
+            Origin::Claim(_) => return false,
+        };
+        match waits {
+            Trigger::Every { .. } => false,
+            Trigger::After { .. } => state.aged && self.truths().holds(instance, Side::At),
+            Trigger::When(_) => self.truths().holds(instance, Side::At),
+        }
+    }
+
+    /// Rule 2: a disarmed guard is armed again when it is next false.
+    pub fn rearm(&mut self, instance: u32) {
+        let state = &self.guards.instances[instance as usize];
+        if state.active && !state.armed && !self.truths().holds(instance, Side::After) {
+            self.guards.instances[instance as usize].armed = true;
+        }
+    }
+
+    /// Arms everything that is active at t = 0.
+    pub fn arm_all(&mut self) -> Result<(), Failure> {
+        for instance in 0..self.guards.instances.len() as u32 {
+            let definition = self.guards.definition(instance);
+            let agent = self.guards.instances[instance as usize].roots[0] as usize;
+            if matches!(definition.origin, Origin::Pair(_)) || inside(&self.agents, agent, definition.mode) {
+                self.arm(instance, Rule::Fresh)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What can be told of the size of rounding from a bound of a point.
+fn width(bound: Interval) -> f64 {
+    let width = bound.hi - bound.lo;
+    if width.is_finite() { width } else { 0.0 }
+}

@@ -1,0 +1,136 @@
+//! A comparison along the trajectories of the agents it reads: the curve on which roots are searched.
+
+use smallvec::SmallVec;
+
+use crate::codegen::kernel::{AgentBox, AgentView};
+use crate::codegen::program::Atom;
+use crate::math::Interval;
+use crate::runtime::population::{ABSENT, Agents, Slots};
+use crate::runtime::solve::roots::Curve;
+
+/// Scratch rows for evaluating along segments; three rows (x, x', x'') for each slot.
+#[derive(Clone, Debug, Default)]
+pub struct CurveRows {
+    numbers: Vec<f64>,
+    boxes: Vec<Interval>,
+    registers: Vec<Interval>,
+    absent: Vec<f64>,
+    absent_box: Vec<Interval>,
+    /// Evaluations at a point.
+    pub evaluations: u64,
+    /// Evaluations over an interval.
+    pub ranges: u64,
+}
+
+impl CurveRows {
+    /// Room for the widest agent type.
+    pub fn new(agents: &Agents<'_>) -> Self {
+        let width = agents
+            .program
+            .types
+            .iter()
+            .map(|ty| ty.layout.n_aux().max(ty.layout.n_states))
+            .max()
+            .unwrap_or(0);
+        Self { absent: vec![f64::NAN; width], absent_box: vec![Interval::WHOLE; width], ..Self::default() }
+    }
+}
+
+/// An atom with its agents.
+pub struct AtomCurve<'a, 'p> {
+    agents: &'a Agents<'p>,
+    atom: &'a Atom,
+    slots: &'a Slots,
+    rows: &'a mut CurveRows,
+    width: usize,
+}
+
+impl<'a, 'p> AtomCurve<'a, 'p> {
+    /// The curve of an atom over the last segments of the agents in its slots.
+    pub fn new(agents: &'a Agents<'p>, atom: &'a Atom, slots: &'a Slots, rows: &'a mut CurveRows) -> Self {
+        let width = atom.slots.iter().map(|&slot| n_states(agents, slots[slot])).max().unwrap_or(0);
+        let total = 3 * width * slots.len();
+        if rows.numbers.len() < total {
+            rows.numbers.resize(total, 0.0);
+            rows.boxes.resize(total, Interval::WHOLE);
+        }
+        Self { agents, atom, slots, rows, width }
+    }
+}
+
+fn n_states(agents: &Agents<'_>, agent: usize) -> usize {
+    if agent == ABSENT { 0 } else { agents.agents[agent].states.len() }
+}
+
+impl Curve for AtomCurve<'_, '_> {
+    fn jet(&mut self, t: f64) -> [f64; 3] {
+        self.rows.evaluations += 1;
+        let width = self.width;
+        if width > 0 {
+            let mut chunks = self.rows.numbers.chunks_exact_mut(3 * width);
+            for (slot, chunk) in (0..self.slots.len()).zip(&mut chunks) {
+                let agent = self.slots[slot];
+                if agent != ABSENT && self.atom.slots.contains(&slot) {
+                    let (x, rest) = chunk.split_at_mut(width);
+                    let (dx, ddx) = rest.split_at_mut(width);
+                    self.agents.agents[agent].segment.jet(t, x, dx, ddx);
+                }
+            }
+        }
+        let views: SmallVec<[AgentView<'_>; 6]> = (0..self.slots.len())
+            .map(|slot| {
+                let agent = self.slots[slot];
+                if agent == ABSENT {
+                    let row = self.rows.absent.as_slice();
+                    return AgentView { states: row, rates: row, accelerations: row, aux: row };
+                }
+                let rows = &self.rows.numbers[3 * width * slot..3 * width * (slot + 1)];
+                AgentView {
+                    states: &rows[..width],
+                    rates: &rows[width..2 * width],
+                    accelerations: &rows[2 * width..],
+                    aux: &self.agents.agents[agent].aux,
+                }
+            })
+            .collect();
+        let mut out = [0.0; 3];
+        self.agents.program.kernel(self.atom.rates).eval(&views, t, &mut out);
+        out
+    }
+
+    fn jet_range(&mut self, s: f64, e: f64) -> [Interval; 3] {
+        self.rows.ranges += 1;
+        let width = self.width;
+        if width > 0 {
+            let mut chunks = self.rows.boxes.chunks_exact_mut(3 * width);
+            for (slot, chunk) in (0..self.slots.len()).zip(&mut chunks) {
+                let agent = self.slots[slot];
+                if agent != ABSENT && self.atom.slots.contains(&slot) {
+                    let (x, rest) = chunk.split_at_mut(width);
+                    let (dx, ddx) = rest.split_at_mut(width);
+                    self.agents.agents[agent].segment.jet_range(s, e, x, dx, ddx);
+                }
+            }
+        }
+        let boxes: SmallVec<[AgentBox<'_>; 6]> = (0..self.slots.len())
+            .map(|slot| {
+                let agent = self.slots[slot];
+                if agent == ABSENT {
+                    let row = self.rows.absent_box.as_slice();
+                    return AgentBox { states: row, rates: row, accelerations: row, aux: &self.rows.absent };
+                }
+                let rows = &self.rows.boxes[3 * width * slot..3 * width * (slot + 1)];
+                AgentBox {
+                    states: &rows[..width],
+                    rates: &rows[width..2 * width],
+                    accelerations: &rows[2 * width..],
+                    aux: &self.agents.agents[agent].aux,
+                }
+            })
+            .collect();
+        let mut out = [Interval::WHOLE; 3];
+        let time = Interval { lo: s, hi: e };
+        self.agents.program.kernel(self.atom.rates).range(&boxes, time, &mut self.rows.registers, &mut out);
+        out
+    }
+}

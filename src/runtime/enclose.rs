@@ -1,0 +1,232 @@
+//! How long a comparison cannot change: it sleeps until then (I6).
+//!
+//! Over [t, t + H] the states of a group stay in a box B if x(t) + [0, H] f(B) lies in B (Picard's operator maps B into
+//! itself). The box is valid until an event or a kink in the group; whoever writes an agent wakes what reads it. If g
+//! keeps its sign on the boxes of the agents it reads, it cannot change before t + H.
+
+use crate::codegen::kernel::{AgentBox, Kernel};
+use crate::math::Interval;
+use crate::runtime::groups::Group;
+use crate::runtime::population::{ABSENT, Agents, Slots};
+use crate::runtime::solve::control::Accuracy;
+
+/// Boxes of groups, kept for those who ask again.
+pub struct Enclosures {
+    accuracy: Accuracy,
+    kept: Vec<Vec<Kept>>,
+    registers: Vec<Interval>,
+    absent: Vec<Interval>,
+    absent_aux: Vec<f64>,
+    /// Right-hand sides and guards evaluated over intervals.
+    pub ranges: u64,
+}
+
+/// A box of one group.
+#[derive(Clone, Debug)]
+struct Kept {
+    version: u32,
+    start: f64,
+    end: f64,
+    states: Vec<Interval>,
+}
+
+/// How many boxes are kept for a group.
+const KEPT_MAX: usize = 6;
+/// How often a box is made larger before its horizon is given up.
+const TRIES: usize = 4;
+
+impl Enclosures {
+    /// No boxes yet.
+    pub fn new(agents: &Agents<'_>, accuracy: Accuracy) -> Self {
+        let width = agents
+            .program
+            .types
+            .iter()
+            .map(|ty| ty.layout.n_aux().max(ty.layout.n_states))
+            .max()
+            .unwrap_or(0);
+        Self {
+            accuracy,
+            kept: Vec::new(),
+            registers: Vec::new(),
+            absent: vec![Interval::WHOLE; width],
+            absent_aux: vec![f64::NAN; width],
+            ranges: 0,
+        }
+    }
+
+    /// Bounds of g over [t, t + horizon], or none if no boxes were found.
+    pub fn value_range(
+        &mut self,
+        agents: &Agents<'_>,
+        groups: &[Group],
+        kernel: &Kernel,
+        slots: &Slots,
+        used: &[usize],
+        t: f64,
+        horizon: f64,
+    ) -> Option<Interval> {
+        let mut places: smallvec::SmallVec<[(usize, usize, usize); 6]> = smallvec::SmallVec::new();
+        for &slot in used {
+            let agent = slots[slot];
+            if agent == ABSENT || agents.agents[agent].states.is_empty() {
+                continue;
+            }
+            let group = agents.agents[agent].group;
+            let kept = self.enclose(agents, group, &groups[group], t, horizon)?;
+            let before = groups[group].members.iter().take_while(|&&member| member != agent);
+            let first = before.map(|&member| agents.agents[member].states.len()).sum();
+            places.push((slot, kept, first));
+        }
+        // A box found for one slot may have pushed out that of another in the same call.
+        let boxes: smallvec::SmallVec<[AgentBox<'_>; 6]> = (0..slots.len())
+            .map(|slot| {
+                let agent = slots[slot];
+                if agent == ABSENT {
+                    let row = self.absent.as_slice();
+                    return AgentBox { states: row, rates: row, accelerations: row, aux: &self.absent_aux };
+                }
+                let states = match places.iter().find(|place| place.0 == slot) {
+                    Some(&(_, kept, first)) => {
+                        let group = agents.agents[agent].group;
+                        &self.kept[group][kept].states[first..first + agents.agents[agent].states.len()]
+                    }
+                    None => &[],
+                };
+                AgentBox { states, rates: &[], accelerations: &[], aux: &agents.agents[agent].aux }
+            })
+            .collect();
+        let mut out = [Interval::WHOLE];
+        self.ranges += 1;
+        kernel.range(&boxes, Interval { lo: t, hi: t + horizon }, &mut self.registers, &mut out);
+        Some(out[0])
+    }
+
+    /// A box of a group's states over [t, t + horizon]: its place among those kept.
+    fn enclose(
+        &mut self,
+        agents: &Agents<'_>,
+        number: usize,
+        group: &Group,
+        t: f64,
+        horizon: f64,
+    ) -> Option<usize> {
+        if self.kept.len() <= number {
+            self.kept.resize(number + 1, Vec::new());
+        }
+        let kept = &mut self.kept[number];
+        kept.retain(|kept| kept.version == group.version);
+        let fits = |kept: &Kept| {
+            kept.start <= t && kept.end >= t + horizon && kept.end - kept.start <= 4.0 * horizon
+        };
+        if let Some(found) = kept.iter().position(fits) {
+            return Some(found);
+        }
+        let states = self.picard(agents, group, t, 1.5 * horizon)?;
+        let kept = &mut self.kept[number];
+        let new = Kept { version: group.version, start: t, end: t + 1.5 * horizon, states };
+        if kept.len() < KEPT_MAX {
+            kept.push(new);
+            return Some(kept.len() - 1);
+        }
+        let oldest = (0..kept.len()).min_by(|&a, &b| kept[a].start.total_cmp(&kept[b].start)).unwrap_or(0);
+        kept[oldest] = new;
+        Some(oldest)
+    }
+
+    fn picard(&mut self, agents: &Agents<'_>, group: &Group, t: f64, horizon: f64) -> Option<Vec<Interval>> {
+        let mut start = Vec::new();
+        for &member in &group.members {
+            let agent = &agents.agents[member];
+            let first = start.len();
+            start.resize(first + agent.states.len(), 0.0);
+            if t == agent.segment.end {
+                start[first..].copy_from_slice(&agent.states);
+            } else {
+                agent.segment.states(t, &mut start[first..]);
+            }
+        }
+        let time = Interval { lo: t, hi: t + horizon };
+        let span = Interval { lo: 0.0, hi: horizon };
+        let mut guess: Vec<Interval> =
+            start.iter().map(|&x| self.padded(Interval { lo: x, hi: x })).collect();
+        for _ in 0..TRIES {
+            let image = self.image(agents, group, &guess, &start, time, span)?;
+            let inside =
+                image.iter().zip(&guess).all(|(image, guess)| guess.lo <= image.lo && image.hi <= guess.hi);
+            if inside {
+                return Some(image.into_iter().map(|bound| self.padded(bound)).collect());
+            }
+            guess = image
+                .iter()
+                .zip(&guess)
+                .map(|(&image, &guess)| self.padded(grown(image.hull(guess))))
+                .collect();
+        }
+        None
+    }
+
+    /// x(t) + [0, H] f(box); none where f is not bounded.
+    fn image(
+        &mut self,
+        agents: &Agents<'_>,
+        group: &Group,
+        guess: &[Interval],
+        start: &[f64],
+        time: Interval,
+        span: Interval,
+    ) -> Option<Vec<Interval>> {
+        let mut image = Vec::with_capacity(start.len());
+        for &member in &group.members {
+            let flow = agents.flow(member);
+            let slots = agents.slots(&flow.frame, &[member]);
+            let mut rates = vec![Interval::WHOLE; agents.agents[member].states.len()];
+            let boxes: Vec<AgentBox<'_>> = slots
+                .iter()
+                .map(|&agent| {
+                    if agent == ABSENT {
+                        let row = self.absent.as_slice();
+                        return AgentBox {
+                            states: row,
+                            rates: row,
+                            accelerations: row,
+                            aux: &self.absent_aux,
+                        };
+                    }
+                    let mut first = 0;
+                    let mut states: &[Interval] = &[];
+                    for &other in &group.members {
+                        let n = agents.agents[other].states.len();
+                        if other == agent {
+                            states = &guess[first..first + n];
+                        }
+                        first += n;
+                    }
+                    AgentBox { states, rates: &[], accelerations: &[], aux: &agents.agents[agent].aux }
+                })
+                .collect();
+            self.ranges += 1;
+            agents.program.kernel(flow.rates).range(&boxes, time, &mut self.registers, &mut rates);
+            for rate in rates {
+                let bound = Interval { lo: start[image.len()], hi: start[image.len()] }.add(span.mul(rate));
+                if !bound.is_finite() {
+                    return None;
+                }
+                image.push(bound);
+            }
+        }
+        Some(image)
+    }
+
+    /// Room for what the integration may be off by.
+    fn padded(&self, bound: Interval) -> Interval {
+        let pad = 10.0 * (self.accuracy.absolute + self.accuracy.tolerance * bound.mag());
+        Interval { lo: bound.lo - pad, hi: bound.hi + pad }
+    }
+}
+
+/// A quarter wider on either side.
+fn grown(bound: Interval) -> Interval {
+    let room = 0.25 * (bound.hi - bound.lo);
+    Interval { lo: bound.lo - room, hi: bound.hi + room }
+}

@@ -1,0 +1,273 @@
+//! The state of a run, and the queues that order it in time.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use crate::base::{Diagnostic, Span};
+use crate::codegen::program::Program;
+use crate::runtime::advance::Stepper;
+use crate::runtime::detect::CurveRows;
+use crate::runtime::enclose::Enclosures;
+use crate::runtime::failure::{Failure, Place, Reason};
+use crate::runtime::groups::Groups;
+use crate::runtime::guards::{Guards, Origin, TooManyGuards};
+use crate::runtime::limits::Limits;
+use crate::runtime::observe::{Cell, End, FalseAssert, Last, Observer, Outcome, Stats, TypeStats};
+use crate::runtime::population::Agents;
+use crate::runtime::present::{Depth, Present};
+use crate::runtime::record::Recorder;
+use crate::runtime::repetition::Repetitions;
+use crate::runtime::solve::control::Accuracy;
+
+/// A time at which something named by a number is due; void if the version is not that of the thing any more.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Due {
+    /// s.
+    pub time: f64,
+    /// An atom instance, a guard instance or a group.
+    pub number: u32,
+    /// See above.
+    pub version: u32,
+}
+
+impl Eq for Due {}
+impl PartialOrd for Due {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Due {
+    /// The earliest is the greatest, then the one with the lowest number.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other
+            .time
+            .total_cmp(&self.time)
+            .then_with(|| other.number.cmp(&self.number))
+            .then_with(|| other.version.cmp(&self.version))
+    }
+}
+
+/// What is due when.
+#[derive(Clone, Debug, Default)]
+pub struct Queues {
+    /// Atom instances, at the end of their certified stretch.
+    pub uncertified: BinaryHeap<Due>,
+    /// Atom instances, at their next change.
+    pub flips: BinaryHeap<Due>,
+    /// Guard instances with a delay or period; the version is their arming.
+    pub schedules: BinaryHeap<Due>,
+    /// Groups, at their clocks; void if the clock has another value.
+    pub clocks: BinaryHeap<Due>,
+}
+
+/// A run in progress.
+pub struct Engine<'p, 'o> {
+    /// What is run.
+    pub program: &'p Program,
+    /// The agents.
+    pub agents: Agents<'p>,
+    /// Who steps with whom.
+    pub groups: Groups,
+    /// The guards.
+    pub guards: Guards<'p>,
+    /// Rows at the instant at hand.
+    pub present: Present,
+    /// Takes steps.
+    pub stepper: Stepper,
+    /// Scratch for root searches, with their counts.
+    pub curves: CurveRows,
+    /// Bounds for sleeping.
+    pub enclosures: Enclosures,
+    /// What is due when.
+    pub queues: Queues,
+    /// Makes rows of trajectories.
+    pub recorder: Recorder<'p>,
+    /// Watches for Zeno behaviour and chattering.
+    pub repetitions: Repetitions,
+    /// Who is told.
+    pub observer: &'o mut dyn Observer,
+    /// Limits.
+    pub limits: Limits,
+    /// The end of the run, s; infinite if none is set.
+    pub time_end: f64,
+    /// Rows of the event log.
+    pub n_events: u64,
+    /// Firings of each definition.
+    pub firings: Vec<u64>,
+    /// Events of each agent type.
+    pub events_of_type: Vec<u64>,
+    /// Segments cut by events.
+    pub n_cuts: u64,
+    /// Roots neither excluded nor isolated.
+    pub n_undecided: u64,
+    /// Asserts that were false.
+    pub false_asserts: Vec<FalseAssert>,
+    /// Remarks, each once.
+    pub warnings: Vec<Diagnostic>,
+    /// A `stop` action of this instant.
+    pub stop: Option<StopRequest>,
+}
+
+/// A `stop` action that has been executed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StopRequest {
+    /// The text given with it.
+    pub reason: Option<String>,
+    /// Who.
+    pub agent: usize,
+    /// The label of the transition or the path of the mode.
+    pub by: String,
+}
+
+impl<'p, 'o> Engine<'p, 'o> {
+    /// A run that has not begun.
+    pub fn new(
+        program: &'p Program,
+        limits: &Limits,
+        observer: &'o mut dyn Observer,
+    ) -> Result<Self, Failure> {
+        let run = &program.run;
+        let accuracy = Accuracy { tolerance: run.tolerance, absolute: run.absolute.unwrap_or(run.tolerance) };
+        let time_end = run.until.unwrap_or(f64::INFINITY);
+        let agents = Agents::new(program);
+        let guards = Guards::new(&agents, limits.guards_max)
+            .map_err(|TooManyGuards { needed }| Reason::GuardLimit { needed, limit: limits.guards_max })?;
+        Ok(Self {
+            program,
+            present: Present::new(&agents),
+            stepper: Stepper::new(&agents, accuracy, time_end, limits),
+            curves: CurveRows::new(&agents),
+            enclosures: Enclosures::new(&agents, accuracy),
+            recorder: Recorder::new(program, time_end),
+            repetitions: Repetitions::new(limits, guards.instances.len()),
+            groups: Groups::default(),
+            queues: Queues::default(),
+            firings: vec![0; guards.definitions.len()],
+            events_of_type: vec![0; program.types.len()],
+            agents,
+            guards,
+            observer,
+            limits: limits.clone(),
+            time_end,
+            n_events: 0,
+            n_cuts: 0,
+            n_undecided: 0,
+            false_asserts: Vec::new(),
+            warnings: Vec::new(),
+            stop: None,
+        })
+    }
+
+    /// Tells the observer the state of every agent at the present time (rule 12).
+    pub fn tell_last(&mut self) -> Result<(), Failure> {
+        let time = self.present.time;
+        for agent in 0..self.agents.len() {
+            self.present.make(&self.agents, &[agent], Depth::States);
+            let row = &self.agents.agents[agent];
+            let system = &self.program.types[row.ty];
+            let states: Vec<f64> = self
+                .present
+                .states(agent)
+                .iter()
+                .zip(&system.states)
+                .map(|(value, column)| value / column.factor)
+                .collect();
+            let first = system.layout.discrete(0);
+            let discretes: Vec<Cell> = system
+                .discretes
+                .iter()
+                .zip(&row.aux[first..])
+                .map(|(column, &value)| {
+                    if column.boolean {
+                        Cell::Bool(value != 0.0)
+                    } else {
+                        Cell::Number(value / column.factor)
+                    }
+                })
+                .collect();
+            let mode = &self.agents.mode(agent).path;
+            self.observer.last(&Last {
+                time,
+                agent,
+                ty: row.ty,
+                mode,
+                states: &states,
+                discretes: &discretes,
+            })?;
+        }
+        Ok(())
+    }
+
+    /// What the run came to.
+    pub fn outcome(self, end: End) -> Outcome {
+        let counts = &self.stepper.counts;
+        let types = self.program.types.iter().enumerate().map(|(ty, system)| TypeStats {
+            name: system.name.clone(),
+            agents: self.agents.of_type[ty].len() as u64,
+            steps: counts.steps_of_type[ty],
+            events: self.events_of_type[ty],
+        });
+        let labels =
+            self.guards.definitions.iter().zip(&self.firings).filter_map(|(definition, &firings)| {
+                match definition.origin {
+                    Origin::Transition(transition) => Some((transition.label.clone(), firings)),
+                    Origin::Pair(pair) => Some((pair.transition.label.clone(), firings)),
+                    Origin::Claim(_) => None,
+                }
+            });
+        let stats = Stats {
+            events: self.n_events,
+            steps: counts.steps,
+            rejected: counts.rejected,
+            rhs_evaluations: counts.rhs_evaluations + self.present.rhs_evaluations,
+            guard_evaluations: self.curves.evaluations,
+            guard_ranges: self.curves.ranges + self.enclosures.ranges,
+            pairs_listed: self.guards.n_pairs,
+            undecided_roots: self.n_undecided,
+            cuts: self.n_cuts,
+            types: types.collect(),
+            transitions: labels.collect(),
+        };
+        Outcome {
+            end,
+            time: self.present.time,
+            stats,
+            false_asserts: self.false_asserts,
+            warnings: self.warnings,
+        }
+    }
+
+    /// The smallest clock: all agents are known up to here.
+    pub fn cover(&mut self) -> f64 {
+        while let Some(due) = self.queues.clocks.peek() {
+            if self.groups.groups[due.number as usize].clock == due.time {
+                return due.time;
+            }
+            self.queues.clocks.pop();
+        }
+        f64::INFINITY
+    }
+
+    /// Enters a group's clock into the queue.
+    pub fn queue_clock(&mut self, group: usize) {
+        let time = self.groups.groups[group].clock;
+        if time < f64::INFINITY {
+            self.queues.clocks.push(Due { time, number: group as u32, version: 0 });
+        }
+    }
+
+    /// Where an agent is at the present instant.
+    pub fn place(&mut self, agent: usize) -> Place {
+        self.present.make(&self.agents, &[agent], Depth::States);
+        Place::new(&self.agents, agent, self.present.time, self.present.states(agent))
+    }
+
+    /// Label and place in the source of an instance's transition or claim.
+    pub fn label(&self, instance: u32) -> (&'p str, Span) {
+        match self.guards.definition(instance).origin {
+            Origin::Transition(transition) => (&transition.label, transition.span),
+            Origin::Pair(pair) => (&pair.transition.label, pair.transition.span),
+            Origin::Claim(claim) => (claim.message.as_deref().unwrap_or("invariant"), claim.span),
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! Why a run stops in error: a variant for each reason, with what a person needs to find the cause.
+
+use crate::base::{Diagnostic, Span};
+use crate::runtime::population::Agents;
+
+/// A run's end in error, or by its observer.
+#[derive(Debug)]
+pub enum Failure {
+    /// The model does what it may not.
+    Model(Box<Diagnostic>),
+    /// The observer could not take what it was told.
+    Output(std::io::Error),
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Self {
+        Failure::Output(error)
+    }
+}
+
+impl From<Reason> for Failure {
+    fn from(reason: Reason) -> Self {
+        Failure::Model(Box::new(reason.diagnostic()))
+    }
+}
+
+/// Where in a run something happened.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// s.
+    pub time: f64,
+    /// The agent's path.
+    pub agent: String,
+    /// The path of its mode; empty for none.
+    pub mode: String,
+    /// Its states and discrete variables by name, SI.
+    pub values: String,
+}
+
+impl Place {
+    /// The place of an agent with these states.
+    pub fn new(agents: &Agents<'_>, agent: usize, time: f64, states: &[f64]) -> Self {
+        let row = &agents.agents[agent];
+        let system = &agents.program.types[row.ty];
+        let named =
+            system.states.iter().zip(states).map(|(column, value)| format!("{} = {value}", column.name));
+        let first = system.layout.discrete(0);
+        let discretes = system.discretes.iter().zip(&row.aux[first..]);
+        let discretes = discretes.map(|(column, value)| format!("{} = {value}", column.name));
+        let values = named.chain(discretes).collect::<Vec<_>>().join(", ");
+        Self { time, agent: agents.name(agent), mode: agents.mode(agent).path.clone(), values }
+    }
+
+    fn note(&self) -> String {
+        let mode = if self.mode.is_empty() { String::new() } else { format!(" in mode {}", self.mode) };
+        let values = if self.values.is_empty() { String::new() } else { format!(": {}", self.values) };
+        format!("at t = {}: {}{mode}{values}", self.time, self.agent)
+    }
+}
+
+/// Why a run stops in error.
+#[derive(Clone, Debug)]
+pub enum Reason {
+    /// Rule 8.
+    InvariantFalse {
+        /// Where.
+        place: Place,
+        /// The text given with it.
+        message: Option<String>,
+        /// The invariant.
+        span: Span,
+    },
+    /// A flow gives no finite number.
+    FlowNotFinite {
+        /// Where.
+        place: Place,
+        /// Which state.
+        state: String,
+        /// Its equation.
+        span: Span,
+    },
+    /// An action gives no finite number.
+    ActionNotFinite {
+        /// Where.
+        place: Place,
+        /// Which variable.
+        variable: String,
+        /// What it would have become.
+        value: f64,
+        /// The assignment.
+        span: Span,
+    },
+    /// The accuracy asked for needs steps below the resolution of time.
+    StepUnderflow {
+        /// Where.
+        place: Place,
+        /// Which state is hardest.
+        state: String,
+        /// The largest magnitude of an eigenvalue of the flow's Jacobian, 1/s.
+        fastest: f64,
+        /// Its equation.
+        span: Span,
+    },
+    /// Rule 4: one transition fires too often in one instant.
+    MicrostepLimit {
+        /// Where.
+        place: Place,
+        /// The limit.
+        limit: u32,
+        /// The labels of the transitions that repeat.
+        cycle: Vec<String>,
+        /// The transition.
+        span: Span,
+    },
+    /// Rule 12.
+    Zeno {
+        /// Where.
+        place: Place,
+        /// The labels of the transitions that repeat.
+        cycle: Vec<String>,
+        /// How many times.
+        count: u32,
+        /// Where the times of the events converge to, s.
+        limit_time: f64,
+        /// The transition.
+        span: Span,
+    },
+    /// A flow switches its branch back and forth without time going on.
+    ChatteringKink {
+        /// Where.
+        place: Place,
+        /// How many times.
+        count: u32,
+        /// The operator.
+        span: Span,
+    },
+    /// `max_steps`.
+    StepLimit {
+        /// When, s.
+        time: f64,
+        /// The limit.
+        limit: u64,
+    },
+    /// `max_guards`.
+    GuardLimit {
+        /// How many there would be.
+        needed: u128,
+        /// The limit.
+        limit: usize,
+    },
+    /// A delay or period that is no length of time.
+    BadDelay {
+        /// Where.
+        place: Place,
+        /// Its value, s.
+        value: f64,
+        /// The transition.
+        span: Span,
+    },
+    /// Nothing can happen any more, and no end is set.
+    NeverEnds {
+        /// When, s.
+        time: f64,
+    },
+}
+
+impl Reason {
+    /// As a message to a person.
+    pub fn diagnostic(&self) -> Diagnostic {
+        match self {
+            Reason::InvariantFalse { place, message, span } => {
+                let mut diagnostic = Diagnostic::error("HY0501", "an invariant became false")
+                    .label(*span, message.clone().unwrap_or_else(|| "false".into()))
+                    .note(place.note());
+                diagnostic.help = Some("add a transition that leaves the mode, or acts, where the invariant ends".into());
+                diagnostic
+            }
+            Reason::FlowNotFinite { place, state, span } => {
+                Diagnostic::error("HY0502", format!("the rate of `{state}` is not a finite number"))
+                    .label(*span, "this equation")
+                    .note(place.note())
+                    .help("guard the place where it is not defined with a transition, or clamp the argument")
+            }
+            Reason::ActionNotFinite { place, variable, value, span } => {
+                Diagnostic::error("HY0503", format!("an action gives `{variable}` the value {value}"))
+                    .label(*span, "this assignment")
+                    .note(place.note())
+                    .help("check the operands: a division by zero, a root or logarithm of a negative number?")
+            }
+            Reason::StepUnderflow { place, state, fastest, span } => {
+                Diagnostic::error("HY0504", format!("the step for `{state}` fell below the resolution of time"))
+                    .label(*span, "this equation is the hardest")
+                    .note(place.note())
+                    .note(format!("the fastest rate of the flow's Jacobian here is {fastest:.3e} 1/s"))
+                    .help("a solution that goes to infinity? a tolerance that is too small? a stiff mode?")
+            }
+            Reason::MicrostepLimit { place, limit, cycle, span } => {
+                Diagnostic::error("HY0505", format!("a transition fired {limit} times in one instant"))
+                    .label(*span, "this transition")
+                    .note(place.note())
+                    .note(format!("the cycle: {}", cycle.join(", ")))
+                    .help("make a guard of the cycle false by its action, or raise `max_microsteps`")
+            }
+            Reason::Zeno { place, cycle, count, limit_time, span } => {
+                Diagnostic::error("HY0506", format!("Zeno behaviour: {count} events in a time too short to resolve"))
+                    .label(*span, "this transition")
+                    .note(place.note())
+                    .note(format!("the cycle: {}", cycle.join(", ")))
+                    .note(format!("the times of the events converge to about t = {limit_time}"))
+                    .help("add a mode for what comes after the limit (a ball at rest), or hysteresis between the guards")
+            }
+            Reason::ChatteringKink { place, count, span } => {
+                Diagnostic::error("HY0507", format!("chattering: a flow switched its branch {count} times in no time"))
+                    .label(*span, "the flows on both sides push back to where this changes")
+                    .note(place.note())
+                    .help("write a mode for the sliding motion, or replace the jump by a steep but continuous function")
+            }
+            Reason::StepLimit { time, limit } => {
+                Diagnostic::error("HY0508", format!("more than {limit} steps")).note(format!("at t = {time}")).help(
+                    "a larger tolerance or an earlier `until` needs fewer steps; the limit is called `max_steps`",
+                )
+            }
+            Reason::GuardLimit { needed, limit } => {
+                Diagnostic::error("HY0509", format!("{needed} guard instances are more than {limit}"))
+                    .note("every pair of agents of an interaction or a quantifier counts")
+                    .help("use fewer agents; the limit is called `max_guards`")
+            }
+            Reason::BadDelay { place, value, span } => {
+                Diagnostic::error("HY0510", format!("a delay or period of {value} s"))
+                    .label(*span, "of this transition")
+                    .note(place.note())
+                    .help("a delay must be finite and at least 0, a period finite and above 0")
+            }
+            Reason::NeverEnds { time } => {
+                Diagnostic::error("HY0511", "nothing can happen any more, and the run has no end")
+                    .note(format!("at t = {time}"))
+                    .help("write `until` in `run { }` or pass --until")
+            }
+        }
+    }
+}
+
+/// A warning: two interactions want the same agent in one instant (rule 5).
+pub fn contested(time: f64, agent: &str, first: (&str, Span), second: (&str, Span)) -> Diagnostic {
+    Diagnostic::warning("HY0520", "two interactions on one agent in one instant")
+        .label(second.1, format!("`{}` was tested again after the other", second.0))
+        .label(first.1, format!("`{}` went first", first.0))
+        .note(format!("first at t = {time}, {agent}; said once"))
+        .help("rule 5: they go in the order of declaration, then of the agents' numbers")
+}

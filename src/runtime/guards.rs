@@ -1,0 +1,428 @@
+//! Guard instances: each transition and each claim for each agent or pair that it can bind, with flags and atoms.
+//!
+//! A *definition* is what the program says once; an *instance* is a definition with its agents; an *atom instance* is a
+//! comparison of an instance with, below quantifiers, one binding. Atom instances lie in one list: those of an instance
+//! together, and of each atom in the order of the agents its quantifiers bind.
+
+use crate::codegen::program::{
+    Atom, ClaimSystem, Condition, Frame, Guard, Layout, PairTransition, Quantified, Relation,
+    TransitionSystem, Trigger,
+};
+use crate::runtime::population::{Agents, Slots};
+
+/// What a definition comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum Origin<'p> {
+    /// A transition of an agent type.
+    Transition(&'p TransitionSystem),
+    /// A transition of an interaction.
+    Pair(&'p PairTransition),
+    /// An invariant or an assert.
+    Claim(&'p ClaimSystem),
+}
+
+/// A guard as the program says it.
+#[derive(Clone, Debug)]
+pub struct Definition<'p> {
+    /// Where it comes from.
+    pub origin: Origin<'p>,
+    /// The type of the first agent.
+    pub ty: usize,
+    /// The mode in which it is active; 0: in all.
+    pub mode: usize,
+    /// Its slots.
+    pub frame: &'p Frame,
+    /// Its condition; none: true.
+    pub guard: Option<&'p Guard>,
+    /// Per atom.
+    pub atoms: Vec<AtomShape>,
+    /// How many atom instances an instance has.
+    pub n_atoms: usize,
+    /// Per `rising`: where its flags begin, the binders around it.
+    pub rising: Vec<AtomShape>,
+    /// How many `rising` flags an instance has.
+    pub n_rising: usize,
+    /// The types that quantifiers range over, and those reached from bound agents by links.
+    pub quantified: Vec<usize>,
+}
+
+/// Where the instances of an atom lie, and what binds them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AtomShape {
+    /// The first, counted from the instance's first.
+    pub first: usize,
+    /// Slot and type of each quantifier around it, outermost first.
+    pub binders: Vec<(usize, usize)>,
+}
+
+/// An instance of a definition.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// Its definition.
+    pub definition: u32,
+    /// Its agents; the second only for interactions.
+    pub roots: [u32; 2],
+    /// Its first atom instance.
+    pub atoms: u32,
+    /// Its first `rising` flag.
+    pub rising: u32,
+    /// Whether the mode it belongs to is active.
+    pub active: bool,
+    /// Rule 2.
+    pub armed: bool,
+    /// `after`: the delay is over.
+    pub aged: bool,
+    /// Changes with every arming, so that schedules of an earlier one are void.
+    pub arming: u32,
+    /// When it was armed, s.
+    pub entry: f64,
+    /// Delay or period, read at arming, s.
+    pub delay: f64,
+    /// `every`: how many periods have passed.
+    pub periods: u64,
+}
+
+/// A comparison with its agents.
+#[derive(Clone, Copy, Debug)]
+pub struct AtomState {
+    /// The instance it belongs to.
+    pub instance: u32,
+    /// Its truth just after `certified`; for `crossing` whether g is on the negative side.
+    pub truth: bool,
+    /// Changes its truth at this instant and is closed or a crossing, so that it is true in it.
+    pub touched: bool,
+    /// Whether its truth was given by a root at `certified`: it counts as found in that instant (rule 4).
+    pub rooted: bool,
+    /// Up to here its truth does not change, s.
+    pub certified: f64,
+    /// When it changes next, s; infinite if that is not known.
+    pub flip: f64,
+    /// The last time before the flip at which the old truth holds, s.
+    pub near: f64,
+    /// See `Known::slack`.
+    pub slack: f64,
+    /// How far ahead to try to sleep, s.
+    pub stride: f64,
+    /// Entries of other versions in the queues are void.
+    pub version: u32,
+}
+
+/// All guards of a run.
+pub struct Guards<'p> {
+    /// By number.
+    pub definitions: Vec<Definition<'p>>,
+    /// By number.
+    pub instances: Vec<Instance>,
+    /// By number.
+    pub atoms: Vec<AtomState>,
+    /// `rising`: whether its condition has been false since arming.
+    pub rising: Vec<bool>,
+    /// For each agent, the instances of which it is a root.
+    pub of_agent: Vec<Vec<u32>>,
+    /// For each type, the instances with a quantifier that may read any agent of it.
+    pub over_type: Vec<Vec<u32>>,
+    /// How many instances range over more than one agent (pairs, and bindings of quantifiers).
+    pub n_pairs: u64,
+}
+
+/// More instances than the limit allows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooManyGuards {
+    /// How many there would be.
+    pub needed: u128,
+}
+
+impl<'p> Guards<'p> {
+    /// All instances, none of them active.
+    pub fn new(agents: &Agents<'p>, guards_max: usize) -> Result<Self, TooManyGuards> {
+        let definitions = definitions(agents);
+        let needed = definitions.iter().map(|definition| size(agents, definition)).sum();
+        if needed > guards_max as u128 {
+            return Err(TooManyGuards { needed });
+        }
+        let mut guards = Self {
+            definitions: Vec::new(),
+            instances: Vec::new(),
+            atoms: Vec::new(),
+            rising: Vec::new(),
+            of_agent: vec![Vec::new(); agents.len()],
+            over_type: vec![Vec::new(); agents.of_type.len()],
+            n_pairs: 0,
+        };
+        for (number, definition) in definitions.iter().enumerate() {
+            for_each_binding(agents, definition, &mut |roots| guards.add(number, definition, roots));
+        }
+        guards.definitions = definitions;
+        Ok(guards)
+    }
+
+    fn add(&mut self, number: usize, definition: &Definition<'p>, roots: [u32; 2]) {
+        let instance = self.instances.len() as u32;
+        self.instances.push(Instance {
+            definition: number as u32,
+            roots,
+            atoms: self.atoms.len() as u32,
+            rising: self.rising.len() as u32,
+            active: false,
+            armed: false,
+            aged: false,
+            arming: 0,
+            entry: 0.0,
+            delay: 0.0,
+            periods: 0,
+        });
+        let fresh = AtomState {
+            instance,
+            truth: false,
+            touched: false,
+            rooted: false,
+            certified: 0.0,
+            flip: f64::INFINITY,
+            near: 0.0,
+            slack: 0.0,
+            stride: 0.0,
+            version: 0,
+        };
+        self.atoms.resize(self.atoms.len() + definition.n_atoms, fresh);
+        self.rising.resize(self.rising.len() + definition.n_rising, false);
+        self.of_agent[roots[0] as usize].push(instance);
+        if matches!(definition.origin, Origin::Pair(_)) {
+            self.of_agent[roots[1] as usize].push(instance);
+            self.n_pairs += 1;
+        } else if !definition.quantified.is_empty() {
+            self.n_pairs += definition.n_atoms as u64;
+        }
+        for &ty in &definition.quantified {
+            self.over_type[ty].push(instance);
+        }
+    }
+
+    /// The definition of an instance.
+    pub fn definition(&self, instance: u32) -> &Definition<'p> {
+        &self.definitions[self.instances[instance as usize].definition as usize]
+    }
+
+    /// The slots of an instance; quantified ones are absent.
+    pub fn slots(&self, agents: &Agents<'_>, instance: u32) -> Slots {
+        let roots = self.roots(instance);
+        agents.slots(self.definition(instance).frame, &roots)
+    }
+
+    /// The agents of an instance: one, or two for an interaction.
+    pub fn roots(&self, instance: u32) -> smallvec::SmallVec<[usize; 2]> {
+        let roots = self.instances[instance as usize].roots;
+        let n = if matches!(self.definition(instance).origin, Origin::Pair(_)) { 2 } else { 1 };
+        roots[..n].iter().map(|&agent| agent as usize).collect()
+    }
+
+    /// The number of the atom instance of atom `atom` under the bindings in `slots`.
+    pub fn atom_index(&self, agents: &Agents<'_>, instance: u32, atom: usize, slots: &Slots) -> usize {
+        let shape = &self.definition(instance).atoms[atom];
+        self.instances[instance as usize].atoms as usize + shape.first + place(agents, shape, slots)
+    }
+
+    /// The number of a `rising` flag under the bindings in `slots`.
+    pub fn rising_index(&self, agents: &Agents<'_>, instance: u32, rising: usize, slots: &Slots) -> usize {
+        let shape = &self.definition(instance).rising[rising];
+        self.instances[instance as usize].rising as usize + shape.first + place(agents, shape, slots)
+    }
+
+    /// The atom and the slots, bindings filled in, of an atom instance; none where the binding is not allowed (`other`).
+    pub fn atom_slots(&self, agents: &Agents<'_>, index: usize) -> (&'p Atom, Slots) {
+        let instance = self.atoms[index].instance;
+        let definition = self.definition(instance);
+        let offset = index - self.instances[instance as usize].atoms as usize;
+        let atom = definition.atoms.partition_point(|shape| shape.first <= offset) - 1;
+        let shape = &definition.atoms[atom];
+        let mut slots = self.slots(agents, instance);
+        let mut rest = offset - shape.first;
+        for &(slot, ty) in shape.binders.iter().rev() {
+            let n = agents.of_type[ty].len();
+            slots[slot] = agents.of_type[ty][rest % n];
+            rest /= n;
+        }
+        if !shape.binders.is_empty() {
+            agents.follow_links(definition.frame, &mut slots);
+        }
+        let guard = definition.guard.expect("an atom belongs to a guard");
+        (&guard.atoms[atom], slots)
+    }
+
+    /// The range of an instance's atom instances.
+    pub fn atom_range(&self, instance: u32) -> std::ops::Range<usize> {
+        let first = self.instances[instance as usize].atoms as usize;
+        first..first + self.definition(instance).n_atoms
+    }
+}
+
+/// The rank of the bindings in `slots` among all bindings.
+fn place(agents: &Agents<'_>, shape: &AtomShape, slots: &Slots) -> usize {
+    shape
+        .binders
+        .iter()
+        .fold(0, |place, &(slot, ty)| place * agents.of_type[ty].len() + agents.agents[slots[slot]].rank)
+}
+
+/// Whether a relation is true where g is zero. A crossing stays as it is there.
+pub fn closed(relation: Relation, truth: bool) -> bool {
+    match relation {
+        Relation::NonPositive => true,
+        Relation::Negative => false,
+        Relation::Crossing => truth,
+    }
+}
+
+/// Whether `slots` may bind `agent` under `other`: not one of the instance's own agents.
+pub fn allowed(quantified: &Quantified, roots: &[usize], agent: usize) -> bool {
+    !(quantified.other && roots.contains(&agent))
+}
+
+/// Whether an agent's (leaf) mode is `mode` or inside it.
+pub fn inside(agents: &Agents<'_>, agent: usize, mode: usize) -> bool {
+    let modes = &agents.program.types[agents.agents[agent].ty].modes;
+    let mut at = Some(agents.agents[agent].aux[Layout::MODE] as usize);
+    while let Some(number) = at {
+        if number == mode {
+            return true;
+        }
+        at = modes[number].parent;
+    }
+    false
+}
+
+fn definitions<'p>(agents: &Agents<'p>) -> Vec<Definition<'p>> {
+    let program = agents.program;
+    let mut definitions = Vec::new();
+    for (ty, system) in program.types.iter().enumerate() {
+        for transition in &system.transitions {
+            let guard = match &transition.trigger {
+                Trigger::When(guard) => Some(guard),
+                Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
+            };
+            let origin = Origin::Transition(transition);
+            definitions.push(define(agents, origin, ty, transition.source, &transition.frame, guard));
+        }
+        for (mode, node) in system.modes.iter().enumerate() {
+            for claim in &node.claims {
+                let guard = Some(&claim.violation);
+                definitions.push(define(agents, Origin::Claim(claim), ty, mode, &claim.frame, guard));
+            }
+        }
+    }
+    for interaction in &program.interactions {
+        for pair in &interaction.transitions {
+            let guard = match &pair.transition.trigger {
+                Trigger::When(guard) => Some(guard),
+                Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
+            };
+            let frame = &pair.transition.frame;
+            definitions.push(define(agents, Origin::Pair(pair), interaction.types[0], 0, frame, guard));
+        }
+    }
+    definitions
+}
+
+fn define<'p>(
+    agents: &Agents<'p>,
+    origin: Origin<'p>,
+    ty: usize,
+    mode: usize,
+    frame: &'p Frame,
+    guard: Option<&'p Guard>,
+) -> Definition<'p> {
+    let (n_atom, n_rising) = guard.map_or((0, 0), |guard| (guard.atoms.len(), guard.n_rising));
+    let mut binders =
+        Binders { atoms: vec![Vec::new(); n_atom], rising: vec![Vec::new(); n_rising], around: Vec::new() };
+    let mut quantified = Vec::new();
+    if let Some(guard) = guard {
+        binders.walk(&guard.condition);
+        if binders.quantifies(&guard.condition) {
+            let own = if matches!(origin, Origin::Pair(_)) { 2 } else { 1 };
+            quantified = frame.slots[own..].iter().map(|slot| slot.ty()).collect();
+            quantified.sort_unstable();
+            quantified.dedup();
+        }
+    }
+    let lay_out = |lists: Vec<Vec<(usize, usize)>>| {
+        let mut first = 0;
+        let mut shapes = Vec::new();
+        for binders in lists {
+            let n: usize = binders.iter().map(|&(_, ty)| agents.of_type[ty].len()).product();
+            shapes.push(AtomShape { first, binders });
+            first += n;
+        }
+        (shapes, first)
+    };
+    let (atoms, n_atoms) = lay_out(binders.atoms);
+    let (rising, n_rising) = lay_out(binders.rising);
+    Definition { origin, ty, mode, frame, guard, atoms, n_atoms, rising, n_rising, quantified }
+}
+
+/// Finds the quantifiers around each atom.
+struct Binders {
+    atoms: Vec<Vec<(usize, usize)>>,
+    rising: Vec<Vec<(usize, usize)>>,
+    around: Vec<(usize, usize)>,
+}
+
+impl Binders {
+    fn walk(&mut self, condition: &Condition) {
+        match condition {
+            Condition::Constant(_) | Condition::Discrete(_) => {}
+            Condition::Atom(atom) => self.atoms[*atom] = self.around.clone(),
+            Condition::And(all) | Condition::Or(all) => all.iter().for_each(|condition| self.walk(condition)),
+            Condition::Exists(quantified) | Condition::Forall(quantified) => {
+                self.around.push((quantified.slot, quantified.ty));
+                self.walk(&quantified.body);
+                self.around.pop();
+            }
+            Condition::Rising(number, condition) => {
+                self.rising[*number] = self.around.clone();
+                self.walk(condition);
+            }
+        }
+    }
+
+    fn quantifies(&self, condition: &Condition) -> bool {
+        match condition {
+            Condition::Constant(_) | Condition::Discrete(_) | Condition::Atom(_) => false,
+            Condition::And(all) | Condition::Or(all) => {
+                all.iter().any(|condition| self.quantifies(condition))
+            }
+            Condition::Exists(_) | Condition::Forall(_) => true,
+            Condition::Rising(_, condition) => self.quantifies(condition),
+        }
+    }
+}
+
+/// How many entries the instances of a definition take: themselves and their atoms.
+fn size(agents: &Agents<'_>, definition: &Definition<'_>) -> u128 {
+    let n = agents.of_type[definition.ty].len() as u128;
+    let each = 1 + definition.n_atoms as u128;
+    match definition.origin {
+        Origin::Pair(pair) => {
+            let other = agents.of_type[definition.frame.slots[1].ty()].len() as u128;
+            let pairs = n * other;
+            each * if pair.symmetric { pairs / 2 } else { pairs }
+        }
+        Origin::Transition(_) | Origin::Claim(_) => each * n,
+    }
+}
+
+/// Calls `visit` with the agents of every instance of a definition, in order: every agent of the type; every ordered
+/// pair of different agents, or every unordered one with the lower number first. All pairs, for now: what lists fewer
+/// candidates takes the place of this function.
+fn for_each_binding(agents: &Agents<'_>, definition: &Definition<'_>, visit: &mut dyn FnMut([u32; 2])) {
+    for &first in &agents.of_type[definition.ty] {
+        match definition.origin {
+            Origin::Transition(_) | Origin::Claim(_) => visit([first as u32, u32::MAX]),
+            Origin::Pair(pair) => {
+                for &second in &agents.of_type[definition.frame.slots[1].ty()] {
+                    if first != second && (!pair.symmetric || first < second) {
+                        visit([first as u32, second as u32]);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,322 @@
+//! One instant: micro-steps until nothing is enabled (rule 4), then the claims about the state that results (rule 8).
+
+use crate::base::Span;
+use crate::codegen::program::{ClaimKind, Target, Trigger};
+use crate::runtime::act::{Effect, Written, claims};
+use crate::runtime::arm::Rule;
+use crate::runtime::engine::Engine;
+use crate::runtime::failure::{Failure, Reason, contested};
+use crate::runtime::guards::Origin;
+use crate::runtime::observe::{Event, FalseAssert};
+use crate::runtime::population::Slots;
+use crate::runtime::repetition::Finding;
+use crate::runtime::truth::Side;
+
+/// An instance that may fire in the next micro-step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Candidate {
+    /// Which.
+    pub instance: u32,
+    /// At a time of its `every`.
+    pub pulse: bool,
+}
+
+/// A candidate with what orders it (rule 4).
+struct Ranked {
+    candidate: Candidate,
+    slots: Slots,
+    priority: f64,
+    depth: usize,
+    declaration: usize,
+}
+
+impl Engine<'_, '_> {
+    /// Executes the instant at the present time, from these candidates.
+    pub fn instant(&mut self, mut candidates: Vec<Candidate>) -> Result<(), Failure> {
+        self.repetitions.instant += 1;
+        let mut micro = 0;
+        let mut touched_agents: Vec<usize> = Vec::new();
+        let mut concerned: Vec<u32> = candidates.iter().map(|candidate| candidate.instance).collect();
+        loop {
+            candidates.sort_unstable();
+            candidates.dedup();
+            candidates.retain(|candidate| self.may_fire(*candidate));
+            if candidates.is_empty() {
+                break;
+            }
+            let (chosen, passed) = self.choose(&candidates)?;
+            let written = self.fire(&chosen, micro, &mut touched_agents)?;
+            let fired: Vec<u32> = chosen.iter().map(|ranked| ranked.candidate.instance).collect();
+            let woken = self.wake(&written)?;
+            for &instance in &fired {
+                self.settle_fired(instance);
+            }
+            for &instance in fired.iter().chain(&woken) {
+                self.rearm(instance);
+            }
+            concerned.extend(fired.iter().chain(&woken));
+            candidates = passed;
+            let enabled = woken.iter().copied().filter(|&instance| self.enabled(instance));
+            candidates.extend(enabled.map(|instance| Candidate { instance, pulse: false }));
+            micro += 1;
+            self.release_crossings(&woken);
+        }
+        concerned.sort_unstable();
+        concerned.dedup();
+        self.judge_claims(&concerned)?;
+        for &instance in &concerned {
+            self.calm(instance);
+        }
+        self.recorder.after_instant(
+            &self.agents,
+            &mut self.present,
+            micro,
+            &touched_agents,
+            self.observer,
+        )?;
+        Ok(())
+    }
+
+    fn may_fire(&self, candidate: Candidate) -> bool {
+        let state = &self.guards.instances[candidate.instance as usize];
+        if candidate.pulse {
+            return state.active && self.truths().holds(candidate.instance, Side::At);
+        }
+        self.enabled(candidate.instance)
+    }
+
+    /// Orders the candidates and takes them greedily; those passed over come second.
+    fn choose(&mut self, candidates: &[Candidate]) -> Result<(Vec<Ranked>, Vec<Candidate>), Failure> {
+        let mut ranked = Vec::with_capacity(candidates.len());
+        for &candidate in candidates {
+            ranked.push(self.rank(candidate));
+        }
+        ranked.sort_by(|a, b| {
+            let by_priority = b.priority.total_cmp(&a.priority);
+            let by_place = (a.depth, a.declaration, &a.slots[..], a.candidate).cmp(&(
+                b.depth,
+                b.declaration,
+                &b.slots[..],
+                b.candidate,
+            ));
+            by_priority.then(by_place)
+        });
+        let mut taken: Vec<(usize, Target, u32)> = Vec::new();
+        let (mut chosen, mut passed) = (Vec::new(), Vec::new());
+        for ranked in ranked {
+            let claims = claims(self, ranked.candidate.instance, &ranked.slots);
+            let conflict =
+                claims.iter().find_map(|claim| taken.iter().find(|taken| (taken.0, taken.1) == *claim));
+            match conflict.copied() {
+                Some((agent, _, first)) => {
+                    self.note_contest(agent, first, ranked.candidate.instance);
+                    passed.push(ranked.candidate);
+                }
+                None => {
+                    let instance = ranked.candidate.instance;
+                    taken.extend(claims.into_iter().map(|(agent, target)| (agent, target, instance)));
+                    chosen.push(ranked);
+                }
+            }
+        }
+        Ok((chosen, passed))
+    }
+
+    fn rank(&mut self, candidate: Candidate) -> Ranked {
+        let slots = self.truths().witnesses(candidate.instance, Side::At);
+        let (transition, depth) = match self.guards.definition(candidate.instance).origin {
+            Origin::Transition(transition) => (transition, transition.depth),
+            Origin::Pair(pair) => (&pair.transition, 0),
+            Origin::Claim(_) => unreachable!("claims are no candidates"),
+        };
+        let priority = transition.priority.map_or(0.0, |function| {
+            crate::runtime::truth::value(&self.agents, &mut self.present, function, &slots)
+        });
+        Ranked { candidate, slots, priority, depth, declaration: transition.declaration }
+    }
+
+    /// Rule 5: two interactions that want the same column of one agent; said once.
+    fn note_contest(&mut self, agent: usize, first: u32, second: u32) {
+        let pair = |instance: u32| matches!(self.guards.definition(instance).origin, Origin::Pair(_));
+        if !pair(first) || !pair(second) || self.warnings.iter().any(|warning| warning.code == "HY0520") {
+            return;
+        }
+        let name = self.agents.name(agent);
+        self.warnings.push(contested(self.present.time, &name, self.label(first), self.label(second)));
+    }
+
+    /// Fires the chosen transitions together: all read the state before.
+    fn fire(
+        &mut self,
+        chosen: &[Ranked],
+        micro: usize,
+        touched: &mut Vec<usize>,
+    ) -> Result<Written, Failure> {
+        let mut effects: Vec<Effect> = Vec::with_capacity(chosen.len());
+        for ranked in chosen {
+            let instance = ranked.candidate.instance;
+            self.count_firing(instance)?;
+            effects.push(self.effect(instance, &ranked.slots)?);
+            self.guards.instances[instance as usize].armed = false;
+        }
+        for effect in &effects {
+            let agents = effect
+                .writes
+                .iter()
+                .map(|write| write.agent)
+                .chain(effect.moves.iter().map(|change| change.agent));
+            for agent in agents {
+                if !touched.contains(&agent) {
+                    touched.push(agent);
+                    self.recorder.before_write(&self.agents, &mut self.present, agent, self.observer)?;
+                }
+            }
+        }
+        for (ranked, effect) in chosen.iter().zip(&effects) {
+            self.log(ranked, effect, micro)?;
+        }
+        self.carry_out(&effects)
+    }
+
+    fn count_firing(&mut self, instance: u32) -> Result<(), Failure> {
+        let definition = self.guards.instances[instance as usize].definition as usize;
+        self.firings[definition] += 1;
+        let scheduled = match self.guards.definition(instance).origin {
+            Origin::Transition(transition) => matches!(transition.trigger, Trigger::Every { .. }),
+            Origin::Pair(pair) => matches!(pair.transition.trigger, Trigger::Every { .. }),
+            Origin::Claim(_) => false,
+        };
+        let time = self.present.time;
+        let finding = self.repetitions.fired(instance, time, scheduled);
+        if finding == Finding::Fine {
+            return Ok(());
+        }
+        let agent = self.guards.instances[instance as usize].roots[0] as usize;
+        let place = self.place(agent);
+        let (_, span): (&str, Span) = self.label(instance);
+        let cycle = self
+            .repetitions
+            .cycle(instance)
+            .iter()
+            .map(|&other| format!("`{}`", self.label(other).0))
+            .collect();
+        Err(match finding {
+            Finding::Zeno(limit_time) => {
+                Reason::Zeno { place, cycle, count: self.limits.zeno_events, limit_time, span }.into()
+            }
+            Finding::Fine | Finding::Cycle => {
+                Reason::MicrostepLimit { place, limit: self.limits.microsteps_max, cycle, span }.into()
+            }
+        })
+    }
+
+    /// Writes the rows of the event log for one firing.
+    fn log(&mut self, ranked: &Ranked, effect: &Effect, micro: usize) -> Result<(), Failure> {
+        let instance = ranked.candidate.instance;
+        let (label, _) = self.label(instance);
+        let pair = matches!(self.guards.definition(instance).origin, Origin::Pair(_));
+        let time = self.present.time;
+        let ty = self.agents.agents[ranked.slots[0]].ty;
+        let mut event =
+            Event { time, micro, transition: label, agent: ranked.slots[0], other: None, modes: None };
+        if effect.moves.is_empty() {
+            event.other = pair.then(|| ranked.slots[1]);
+            self.n_events += 1;
+            self.events_of_type[ty] += 1;
+            self.observer.event(&event)?;
+            return Ok(());
+        }
+        for change in &effect.moves {
+            let modes = &self.program.types[self.agents.agents[change.agent].ty].modes;
+            event.agent = change.agent;
+            event.other = pair.then(|| ranked.slots[usize::from(change.agent == ranked.slots[0])]);
+            event.modes = Some((&modes[change.from].path, &modes[change.to].path));
+            self.n_events += 1;
+            self.events_of_type[ty] += 1;
+            self.observer.event(&event)?;
+        }
+        Ok(())
+    }
+
+    /// A guard that has just fired looks at its boundary by the rates along the new flow (rule 3).
+    fn settle_fired(&mut self, instance: u32) {
+        if !self.guards.instances[instance as usize].active {
+            return;
+        }
+        for index in self.guards.atom_range(instance) {
+            let state = &mut self.guards.atoms[index];
+            let was_rooted = state.rooted;
+            state.touched = false;
+            state.rooted = false;
+            if was_rooted {
+                self.settle(index, Rule::Rates, &Written::default());
+            }
+        }
+        self.note_rising(instance);
+    }
+
+    /// A crossing is true for one micro-step only.
+    fn release_crossings(&mut self, woken: &[u32]) {
+        for &instance in woken {
+            if !self.guards.instances[instance as usize].active {
+                continue;
+            }
+            // What is enabled by it has been collected; it fires in the next micro-step or never.
+            if !self.enabled(instance) {
+                for index in self.guards.atom_range(instance) {
+                    let state = &mut self.guards.atoms[index];
+                    state.touched &= state.rooted;
+                }
+            }
+        }
+    }
+
+    /// Ends the instant for an instance: what was true only at it is so no more.
+    pub fn calm(&mut self, instance: u32) {
+        for index in self.guards.atom_range(instance) {
+            let state = &mut self.guards.atoms[index];
+            state.touched = false;
+            state.rooted = false;
+        }
+        self.note_rising(instance);
+        self.rearm(instance);
+    }
+
+    /// Rule 8: invariants that are false now end the run, asserts are noted.
+    pub fn judge_claims(&mut self, concerned: &[u32]) -> Result<(), Failure> {
+        for &instance in concerned {
+            let Origin::Claim(claim) = self.guards.definition(instance).origin else { continue };
+            let state = &self.guards.instances[instance as usize];
+            if !(state.active && state.armed && self.truths().holds(instance, Side::After)) {
+                continue;
+            }
+            let agent = state.roots[0] as usize;
+            match claim.kind {
+                ClaimKind::Invariant => {
+                    let place = self.place(agent);
+                    return Err(Reason::InvariantFalse {
+                        place,
+                        message: claim.message.clone(),
+                        span: claim.span,
+                    }
+                    .into());
+                }
+                ClaimKind::Assert => {
+                    self.guards.instances[instance as usize].armed = false;
+                    let time = self.present.time;
+                    match self.false_asserts.iter_mut().find(|known| known.span == claim.span) {
+                        Some(known) => known.count += 1,
+                        None => self.false_asserts.push(FalseAssert {
+                            span: claim.span,
+                            message: claim.message.clone(),
+                            time,
+                            agent,
+                            count: 1,
+                        }),
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}

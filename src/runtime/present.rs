@@ -1,0 +1,144 @@
+//! The rows of agents at one instant: states, rates by the active flow, second rates; made when first asked for.
+
+use smallvec::SmallVec;
+
+use crate::codegen::kernel::AgentView;
+use crate::runtime::population::{ABSENT, Agents};
+
+/// The views that a kernel takes.
+pub type Views<'a> = SmallVec<[AgentView<'a>; 6]>;
+
+/// How much of an agent's rows is needed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Depth {
+    /// States.
+    States,
+    /// States and rates.
+    Rates,
+    /// States, rates and second rates.
+    Accelerations,
+}
+
+/// The rows of all agents at one time.
+pub struct Present {
+    /// The time, s.
+    pub time: f64,
+    /// Right-hand sides evaluated here.
+    pub rhs_evaluations: u64,
+    stamp: u64,
+    rows: Vec<Rows>,
+    absent: Vec<f64>,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Rows {
+    /// The stamp at which each depth was made.
+    made: [u64; 3],
+    states: Vec<f64>,
+    rates: Vec<f64>,
+    accelerations: Vec<f64>,
+}
+
+impl Present {
+    /// No rows yet.
+    pub fn new(agents: &Agents<'_>) -> Self {
+        let width = agents.program.types.iter().map(|ty| ty.layout.n_aux().max(ty.layout.n_states)).max();
+        let absent = vec![f64::NAN; width.unwrap_or(0)];
+        Self {
+            time: f64::NAN,
+            rhs_evaluations: 0,
+            stamp: 1,
+            rows: vec![Rows::default(); agents.len()],
+            absent,
+        }
+    }
+
+    /// Moves to another time.
+    pub fn go(&mut self, time: f64) {
+        if time != self.time {
+            self.time = time;
+            self.stamp += 1;
+        }
+    }
+
+    /// Forgets all rows, because something was written.
+    pub fn forget(&mut self) {
+        self.stamp += 1;
+    }
+
+    /// Makes the rows of these agents down to a depth.
+    pub fn make(&mut self, agents: &Agents<'_>, slots: &[usize], depth: Depth) {
+        for &agent in slots {
+            if agent != ABSENT {
+                self.make_one(agents, agent, depth);
+            }
+        }
+    }
+
+    fn make_one(&mut self, agents: &Agents<'_>, number: usize, depth: Depth) {
+        if self.rows[number].made[depth as usize] == self.stamp {
+            return;
+        }
+        if depth == Depth::States {
+            let agent = &agents.agents[number];
+            let rows = &mut self.rows[number];
+            rows.states.resize(agent.states.len(), 0.0);
+            if agent.segment.end == self.time {
+                rows.states.copy_from_slice(&agent.states);
+            } else {
+                agent.segment.states(self.time, &mut rows.states);
+            }
+            rows.made[0] = self.stamp;
+            return;
+        }
+        self.make_one(agents, number, if depth == Depth::Rates { Depth::States } else { Depth::Rates });
+        let flow = agents.flow(number);
+        let slots = agents.slots(&flow.frame, &[number]);
+        self.make(agents, &slots[1..], if depth == Depth::Rates { Depth::States } else { Depth::Rates });
+        let mut out = std::mem::take(self.row_mut(number, depth));
+        out.resize(agents.layout(number).n_states, 0.0);
+        let function = if depth == Depth::Rates { flow.rates } else { flow.accelerations };
+        agents.program.kernel(function).eval(&self.views(agents, &slots), self.time, &mut out);
+        self.rhs_evaluations += u64::from(depth == Depth::Rates);
+        *self.row_mut(number, depth) = out;
+        self.rows[number].made[depth as usize] = self.stamp;
+    }
+
+    fn row_mut(&mut self, number: usize, depth: Depth) -> &mut Vec<f64> {
+        let rows = &mut self.rows[number];
+        match depth {
+            Depth::States => &mut rows.states,
+            Depth::Rates => &mut rows.rates,
+            Depth::Accelerations => &mut rows.accelerations,
+        }
+    }
+
+    /// The rows of the agents in some slots, as deep as they have been made.
+    pub fn views<'a>(&'a self, agents: &'a Agents<'_>, slots: &[usize]) -> Views<'a> {
+        slots.iter().map(|&agent| self.view(agents, agent)).collect()
+    }
+
+    fn view<'a>(&'a self, agents: &'a Agents<'_>, agent: usize) -> AgentView<'a> {
+        if agent == ABSENT {
+            let row = self.absent.as_slice();
+            return AgentView { states: row, rates: row, accelerations: row, aux: row };
+        }
+        let rows = &self.rows[agent];
+        AgentView {
+            states: &rows.states,
+            rates: &rows.rates,
+            accelerations: &rows.accelerations,
+            aux: &agents.agents[agent].aux,
+        }
+    }
+
+    /// The states of an agent, made before.
+    pub fn states(&self, agent: usize) -> &[f64] {
+        &self.rows[agent].states
+    }
+
+    /// The rates of an agent, made before.
+    pub fn rates(&self, agent: usize) -> &[f64] {
+        &self.rows[agent].rates
+    }
+}

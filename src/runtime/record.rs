@@ -1,0 +1,225 @@
+//! Rows of trajectories (rule 16): samples at k d, or every accepted step and both sides of every event.
+
+use crate::codegen::program::{Layout, LetValue, Program, Record, VarRef};
+use crate::runtime::failure::Failure;
+use crate::runtime::observe::{Cell, Observer, Row};
+use crate::runtime::population::Agents;
+use crate::runtime::present::{Depth, Present};
+use crate::runtime::solve::ulp;
+use crate::runtime::truth;
+
+/// Makes the rows that the records of a program ask for.
+pub struct Recorder<'p> {
+    program: &'p Program,
+    records: Vec<Recording<'p>>,
+    time_end: f64,
+    /// The last instant with micro-steps, and how many it had.
+    last_instant: (f64, usize),
+    cells: Vec<Cell>,
+}
+
+struct Recording<'p> {
+    record: &'p Record,
+    /// Samples written so far.
+    n_samples: u64,
+    /// The time of the last row of each agent of the record, in its order; for records of every step.
+    last: Vec<f64>,
+}
+
+impl<'p> Recorder<'p> {
+    /// No rows yet.
+    pub fn new(program: &'p Program, time_end: f64) -> Self {
+        let records = program.run.records.iter().map(|record| Recording {
+            record,
+            n_samples: 0,
+            last: vec![f64::NEG_INFINITY; if record.every.is_none() { record.agents.len() } else { 0 }],
+        });
+        Self { program, records: records.collect(), time_end, last_instant: (f64::NAN, 0), cells: Vec::new() }
+    }
+
+    /// The time of the next sample of any record; infinite for none.
+    pub fn next(&self) -> f64 {
+        self.records.iter().map(|recording| self.next_of(recording)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// k d, or the end where k d misses it by rounding.
+    fn next_of(&self, recording: &Recording<'_>) -> f64 {
+        let Some(every) = recording.record.every else { return f64::INFINITY };
+        let time = recording.n_samples as f64 * every;
+        if (time - self.time_end).abs() <= 4.0 * ulp(self.time_end) {
+            return self.time_end;
+        }
+        if time > self.time_end { f64::INFINITY } else { time }
+    }
+
+    /// Writes the samples that are due at `time`.
+    pub fn sample(
+        &mut self,
+        agents: &Agents<'_>,
+        present: &mut Present,
+        time: f64,
+        observer: &mut dyn Observer,
+    ) -> Result<(), Failure> {
+        present.go(time);
+        let micro = if self.last_instant.0 == time { self.last_instant.1 } else { 0 };
+        for number in 0..self.records.len() {
+            if self.next_of(&self.records[number]) != time {
+                continue;
+            }
+            self.records[number].n_samples += 1;
+            let record = self.records[number].record;
+            for &agent in &record.agents {
+                self.row(agents, present, number, agent, micro, observer)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the first rows of the records of every step: the state before the instant t = 0.
+    pub fn begin(
+        &mut self,
+        agents: &Agents<'_>,
+        present: &mut Present,
+        observer: &mut dyn Observer,
+    ) -> Result<(), Failure> {
+        for agent in 0..agents.len() {
+            self.write_every_step(agents, present, agent, present.time, 0, true, observer)?;
+        }
+        Ok(())
+    }
+
+    /// Writes the rows of an agent's accepted step that has become final.
+    pub fn step(
+        &mut self,
+        agents: &Agents<'_>,
+        present: &mut Present,
+        agent: usize,
+        time: f64,
+        observer: &mut dyn Observer,
+    ) -> Result<(), Failure> {
+        self.write_every_step(agents, present, agent, time, 0, true, observer)
+    }
+
+    /// Writes the near side of an event.
+    pub fn before_write(
+        &mut self,
+        agents: &Agents<'_>,
+        present: &mut Present,
+        agent: usize,
+        observer: &mut dyn Observer,
+    ) -> Result<(), Failure> {
+        let time = present.time;
+        self.write_every_step(agents, present, agent, time, 0, true, observer)
+    }
+
+    /// Writes the far side of an event for the agents that it wrote.
+    pub fn after_instant(
+        &mut self,
+        agents: &Agents<'_>,
+        present: &mut Present,
+        micro: usize,
+        touched: &[usize],
+        observer: &mut dyn Observer,
+    ) -> Result<(), Failure> {
+        let before = if self.last_instant.0 == present.time { self.last_instant.1 } else { 0 };
+        self.last_instant = (present.time, before.max(micro));
+        let time = present.time;
+        for &agent in touched {
+            self.write_every_step(agents, present, agent, time, micro, false, observer)?;
+        }
+        Ok(())
+    }
+
+    /// Whether any record asks for every step.
+    pub fn wants_steps(&self) -> bool {
+        self.records.iter().any(|recording| recording.record.every.is_none())
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn write_every_step(
+        &mut self,
+        agents: &Agents<'_>,
+        present: &mut Present,
+        agent: usize,
+        time: f64,
+        micro: usize,
+        once: bool,
+        observer: &mut dyn Observer,
+    ) -> Result<(), Failure> {
+        for number in 0..self.records.len() {
+            let recording = &mut self.records[number];
+            if recording.record.every.is_some() {
+                continue;
+            }
+            let Ok(place) = recording.record.agents.binary_search(&agent) else { continue };
+            if once && recording.last[place] == time {
+                continue;
+            }
+            recording.last[place] = time;
+            present.go(time);
+            self.row(agents, present, number, agent, micro, observer)?;
+        }
+        Ok(())
+    }
+
+    fn row(
+        &mut self,
+        agents: &Agents<'_>,
+        present: &mut Present,
+        number: usize,
+        agent: usize,
+        micro: usize,
+        observer: &mut dyn Observer,
+    ) -> Result<(), Failure> {
+        present.make(agents, &[agent], Depth::States);
+        let record = self.records[number].record;
+        let mut cells = std::mem::take(&mut self.cells);
+        cells.clear();
+        for variable in &record.variables[agents.agents[agent].ty] {
+            cells.push(variable.map_or(Cell::Empty, |variable| self.cell(agents, present, agent, variable)));
+        }
+        let row = Row { time: present.time, micro, agent, mode: &agents.mode(agent).path, cells: &cells };
+        let told = observer.sample(number, &row);
+        self.cells = cells;
+        Ok(told?)
+    }
+
+    /// A variable of an agent in its declared unit.
+    fn cell(&self, agents: &Agents<'_>, present: &mut Present, agent: usize, variable: VarRef) -> Cell {
+        let row = &agents.agents[agent];
+        let system = &self.program.types[row.ty];
+        let layout: &Layout = &system.layout;
+        let number = |value: f64, boolean: bool, factor: f64| {
+            if boolean { Cell::Bool(value != 0.0) } else { Cell::Number(value / factor) }
+        };
+        match variable {
+            VarRef::State(k) => number(present.states(agent)[k], false, system.states[k].factor),
+            VarRef::Discrete(k) => {
+                number(row.aux[layout.discrete(k)], system.discretes[k].boolean, system.discretes[k].factor)
+            }
+            VarRef::Param(k) => {
+                number(row.aux[layout.param(k)], system.params[k].boolean, system.params[k].factor)
+            }
+            VarRef::Link(k) => {
+                let target = row.aux[layout.link(k)];
+                Cell::Agent((target >= 0.0).then_some(target as usize))
+            }
+            VarRef::Let(k) => {
+                let definition = &system.lets[k];
+                if definition.mode != 0 && !crate::runtime::guards::inside(agents, agent, definition.mode) {
+                    return Cell::Empty;
+                }
+                let slots = agents.slots(&definition.frame, &[agent]);
+                match &definition.value {
+                    LetValue::Number(function) => {
+                        let value = truth::value(agents, present, *function, &slots);
+                        number(value, definition.column.boolean, definition.column.factor)
+                    }
+                    LetValue::Condition(guard) => {
+                        Cell::Bool(truth::test(agents, present, guard, &definition.frame, &slots))
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! Numerics only: steps, dense output, step control, roots. Knows no agent, kernel or event.
+//!
+//! Single letters, here only: `t` time, `h` step, `x` state, `k` stage rates, `g` the expression of a guard,
+//! `s`, `e` the ends of a stretch of time.
+
+pub mod segment;
+pub mod tsit5;
+pub mod control;
+pub mod roots;
+
+/// The width to which the time of a root is known at least: max(1e-12, 4 ulp of t), s.
+pub fn time_resolution(t: f64) -> f64 {
+    (4.0 * ulp(t)).max(1e-12)
+}
+
+/// The distance from |t| to the next number.
+pub fn ulp(t: f64) -> f64 {
+    let size = t.abs();
+    size.next_up() - size
+}

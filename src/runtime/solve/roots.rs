@@ -1,0 +1,394 @@
+//! Certified detection: the first time at which a comparison changes its truth, found by excluding or isolating roots.
+//!
+//! A comparison is known to be true or false just after `s`. With f = g where it is false and f = -g where it is true,
+//! it changes where f falls below zero. Over a piece of time the search looks, in this order, at: a bound of f; the
+//! bound of f' (monotone: the signs at the ends decide); the bound of f'' (convex or concave: the extremum decides);
+//! else it divides the piece. A bracketing method isolates the root to the last bits of the time.
+//!
+//! **On the boundary** at `s` (rule 3): |f| within rounding, or within |f'| times the resolution of time. Then the first
+//! of f', f'' that is not zero within rounding decides: into f > 0 the comparison holds on (the zero at `s` is not a
+//! root), into f < 0 it changes at once. If neither decides, `<=` is true and `<` false.
+
+use crate::math::Interval;
+use crate::runtime::solve::{time_resolution, ulp};
+
+/// g along a trajectory.
+pub trait Curve {
+    /// g, g', g'' at t; g'' may be NaN where it is not known.
+    fn jet(&mut self, t: f64) -> [f64; 3];
+    /// Bounds of g, g', g'' over [s, e].
+    fn jet_range(&mut self, s: f64, e: f64) -> [Interval; 3];
+}
+
+/// What is known of a comparison at the start of a search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Known {
+    /// Its truth (for `crossing`: whether g is on the negative side).
+    pub truth: bool,
+    /// Whether it is true where g is exactly zero, so that touching zero makes it true.
+    pub closed: bool,
+    /// How far from zero g may be at the start and count as on the boundary, beyond what the rates there say.
+    pub slack: f64,
+    /// A root that is due within this time after the end counts as at the end, s.
+    pub reach: f64,
+}
+
+/// A change of truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flip {
+    /// When; the new truth holds here or just after, s.
+    pub time: f64,
+    /// The last time at which the old truth held as far as is known, s.
+    pub near: f64,
+    /// Not isolated: the comparison came within rounding of zero, or the limit of pieces was reached.
+    pub undecided: bool,
+}
+
+/// The result of a search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Search {
+    /// No change in (s, e].
+    None,
+    /// The first change.
+    Flip(Flip),
+}
+
+/// Which way f goes from a point on the boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Into f > 0.
+    Up,
+    /// Into f < 0.
+    Down,
+    /// Not decided by the first two rates.
+    Along,
+}
+
+/// g with its sign turned so that the present truth is f > 0. A g that is no number counts as false.
+struct Turned<'a> {
+    curve: &'a mut dyn Curve,
+    turned: bool,
+}
+
+impl Turned<'_> {
+    fn jet(&mut self, t: f64) -> [f64; 3] {
+        let jet = self.curve.jet(t);
+        if jet[0].is_nan() {
+            return [if self.turned { f64::NEG_INFINITY } else { f64::INFINITY }, f64::NAN, f64::NAN];
+        }
+        if self.turned { jet.map(|v| -v) } else { jet }
+    }
+
+    fn value(&mut self, t: f64) -> f64 {
+        self.jet(t)[0]
+    }
+
+    fn undefined(&mut self, t: f64) -> bool {
+        self.curve.jet(t)[0].is_nan()
+    }
+
+    fn range(&mut self, s: f64, e: f64) -> [Interval; 3] {
+        let range = self.curve.jet_range(s, e);
+        if self.turned { range.map(|v| Interval { lo: -v.hi, hi: -v.lo }) } else { range }
+    }
+
+    /// The rounding bounds of f, f', f'' at t.
+    fn rounding(&mut self, t: f64) -> [f64; 3] {
+        self.range(t, t).map(|bound| bound.hi - bound.lo)
+    }
+}
+
+/// How the search enters a piece.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Entry {
+    /// f > 0 at its start.
+    Clear,
+    /// f is zero at its start and positive, or zero, just after.
+    Boundary,
+    /// f is not positive at its start, and did not change before.
+    Unsettled,
+}
+
+/// After so many pieces a search asks whether f is zero all along, or not defined.
+const PIECES_PATIENT: u32 = 24;
+
+/// The first change of truth in (s, e], or at s where the boundary decides so. At most `pieces_max` pieces are looked at.
+pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_max: u32) -> Search {
+    let mut f = Turned { curve, turned: known.truth };
+    let mut pieces = vec![(s, e, Entry::Unsettled)];
+    let mut known_here = known;
+    let mut looked_at = 0;
+    while let Some((s, e, mut entry)) = pieces.pop() {
+        if entry == Entry::Unsettled {
+            entry = match enter(&mut f, s, known_here) {
+                Ok(entry) => entry,
+                Err(flip) => return Search::Flip(flip),
+            };
+            known_here.slack = 0.0;
+        }
+        looked_at += 1;
+        let middle = 0.5 * (s + e);
+        match look(&mut f, s, e, entry, &known) {
+            Look::Clear => {}
+            Look::Flip(flip) => return Search::Flip(flip),
+            Look::Divide
+                if looked_at >= PIECES_PATIENT && f.undefined(s) && f.undefined(middle) && f.undefined(e) => {
+            }
+            Look::Divide if looked_at < pieces_max && divisible(s, e) => {
+                let at_middle = if f.value(middle) > 0.0 { Entry::Clear } else { Entry::Unsettled };
+                pieces.push((middle, e, at_middle));
+                pieces.push((s, middle, entry));
+            }
+            Look::Divide => {
+                if let Some(flip) = undecided(&mut f, s, e, known.touching()) {
+                    return Search::Flip(flip);
+                }
+            }
+        }
+        if looked_at >= PIECES_PATIENT && looked_at.is_power_of_two() {
+            if let Some((s, e, _)) = pieces.last().copied() {
+                if let Some(found) = along(&mut f, s, e, &known) {
+                    pieces.pop();
+                    if let Search::Flip(flip) = found {
+                        return Search::Flip(flip);
+                    }
+                }
+            }
+        }
+    }
+    Search::None
+}
+
+impl Known {
+    /// Whether coming within rounding of zero changes the truth.
+    fn touching(&self) -> bool {
+        self.closed && !self.truth
+    }
+}
+
+/// Settles a piece over which |f| stays within rounding of zero: it is on the boundary all along.
+fn along(f: &mut Turned<'_>, s: f64, e: f64, known: &Known) -> Option<Search> {
+    let bound = f.range(s, e)[0];
+    let rounding = f.rounding(0.5 * (s + e))[0];
+    if bound.lo > 0.0 || bound.hi < 0.0 || bound.hi - bound.lo > 4.0 * rounding {
+        return None;
+    }
+    Some(if known.touching() {
+        Search::Flip(Flip { time: s, near: s, undecided: true })
+    } else {
+        Search::None
+    })
+}
+
+fn decide(jet: &[f64; 3], rounding: &[f64; 3]) -> Direction {
+    for order in 1..3 {
+        if jet[order].abs() > rounding[order] {
+            return if jet[order] > 0.0 { Direction::Up } else { Direction::Down };
+        }
+    }
+    Direction::Along
+}
+
+/// Settles the start of a search: clear, on the boundary going up, or changing at once.
+fn enter(f: &mut Turned<'_>, s: f64, known: Known) -> Result<Entry, Flip> {
+    let jet = f.jet(s);
+    let band = known.slack.max(jet[1].abs() * time_resolution(s));
+    if jet[0] > band || jet[0].is_nan() {
+        return Ok(Entry::Clear);
+    }
+    let rounding = f.rounding(s);
+    if jet[0] > band.max(rounding[0]) {
+        return Ok(Entry::Clear);
+    }
+    let flip = Flip { time: s, near: s, undecided: false };
+    if jet[0] < -band.max(rounding[0]) {
+        return Err(flip);
+    }
+    match decide(&jet, &rounding) {
+        Direction::Up => Ok(Entry::Boundary),
+        Direction::Down => Err(flip),
+        Direction::Along if known.truth == known.closed => Ok(Entry::Boundary),
+        Direction::Along => Err(flip),
+    }
+}
+
+/// What a look at a piece found.
+enum Look {
+    Clear,
+    Flip(Flip),
+    Divide,
+}
+
+fn look(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, known: &Known) -> Look {
+    let [f0, f1, f2] = f.range(s, e);
+    if f0.lo > 0.0 {
+        return Look::Clear;
+    }
+    if f1.lo >= 0.0 {
+        return Look::Clear;
+    }
+    if entry == Entry::Clear && clears_by_mean_value(f, s, e, &f0, &f1) {
+        return Look::Clear;
+    }
+    let at_end = f.jet(e);
+    if f1.hi <= 0.0 {
+        return match entry {
+            Entry::Clear => falling(f, s, e, &at_end, known.reach),
+            Entry::Boundary | Entry::Unsettled => Look::Flip(Flip { time: s, near: s, undecided: false }),
+        };
+    }
+    if f2.lo >= 0.0 {
+        return convex(f, s, e, entry, &at_end, known);
+    }
+    if f2.hi <= 0.0 {
+        return concave(f, s, e, entry, &at_end, known.reach);
+    }
+    Look::Divide
+}
+
+/// f(middle) outweighs all that f' can take away, with room for rounding.
+fn clears_by_mean_value(f: &mut Turned<'_>, s: f64, e: f64, f0: &Interval, f1: &Interval) -> bool {
+    let at_middle = f.value(0.5 * (s + e));
+    let loss = f1.lo.abs().max(f1.hi.abs()) * 0.5 * (e - s);
+    at_middle * (1.0 - 1e-9) > loss && at_middle > 1e-12 * (f0.hi - f0.lo)
+}
+
+/// f falls from f(s) > 0.
+fn falling(f: &mut Turned<'_>, s: f64, e: f64, at_end: &[f64; 3], reach: f64) -> Look {
+    if at_end[0] <= 0.0 {
+        return Look::Flip(isolate(f, s, e));
+    }
+    if due(f, e, at_end, reach) {
+        return Look::Flip(Flip { time: e, near: e, undecided: false });
+    }
+    Look::Clear
+}
+
+/// Whether f, positive at the end, falls to zero within `reach` after it, or is there within rounding: such a root is
+/// found here, not at the start of what follows.
+fn due(f: &mut Turned<'_>, e: f64, at_end: &[f64; 3], reach: f64) -> bool {
+    let loss = -at_end[1] * reach;
+    let suspicious = at_end[1] < 0.0 && at_end[0] <= loss.max(1e-9 * at_end[1].abs());
+    suspicious && (at_end[0] <= loss || at_end[0] <= f.rounding(e)[0])
+}
+
+/// f'' >= 0: one minimum at most.
+fn convex(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, at_end: &[f64; 3], known: &Known) -> Look {
+    if entry == Entry::Boundary {
+        return Look::Clear;
+    }
+    if at_end[1] <= 0.0 {
+        return falling(f, s, e, at_end, known.reach);
+    }
+    if f.jet(s)[1] >= 0.0 {
+        return Look::Clear;
+    }
+    let lowest = extremum(f, s, e);
+    let value = f.value(lowest);
+    let rounding = f.rounding(lowest)[0];
+    if value < -rounding {
+        return Look::Flip(isolate(f, s, lowest));
+    }
+    if value > rounding || !known.touching() {
+        return Look::Clear;
+    }
+    Look::Flip(Flip { time: lowest, near: lowest, undecided: true })
+}
+
+/// f'' <= 0: it stays above the chord.
+fn concave(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, at_end: &[f64; 3], reach: f64) -> Look {
+    if at_end[0] > 0.0 {
+        if due(f, e, at_end, reach) {
+            return Look::Flip(Flip { time: e, near: e, undecided: false });
+        }
+        return Look::Clear;
+    }
+    let from = match entry {
+        Entry::Clear => s,
+        Entry::Boundary | Entry::Unsettled => {
+            let highest = if f.jet(s)[1] <= 0.0 { s } else { extremum(f, s, e) };
+            if f.value(highest) <= 0.0 {
+                return Look::Flip(Flip { time: highest, near: highest, undecided: false });
+            }
+            highest
+        }
+    };
+    Look::Flip(isolate(f, from, e))
+}
+
+/// A piece too small to divide, or one piece too many.
+fn undecided(f: &mut Turned<'_>, s: f64, e: f64, touching: bool) -> Option<Flip> {
+    let [at_start, at_end] = [f.value(s), f.value(e)];
+    if at_end < 0.0 {
+        return Some(Flip { time: e, near: s, undecided: at_start <= 0.0 });
+    }
+    let within = |f: &mut Turned<'_>, t: f64, value: f64| value.abs() <= f.rounding(t)[0];
+    if touching && at_start > 0.0 && within(f, e, at_end) {
+        return Some(Flip { time: e, near: s, undecided: true });
+    }
+    None
+}
+
+/// Pieces are divided down to a few bits of the time.
+fn divisible(s: f64, e: f64) -> bool {
+    e - s > 4.0 * ulp(e)
+}
+
+/// Where the monotone f' changes its sign in [s, e].
+fn extremum(f: &mut Turned<'_>, s: f64, e: f64) -> f64 {
+    let rising = f.jet(e)[1] > 0.0;
+    let (lo, hi) = bracket(s, e, &mut |t| {
+        let rate = f.jet(t)[1];
+        if rising { -rate } else { rate }
+    });
+    if f.value(lo) < f.value(hi) { lo } else { hi }
+}
+
+/// The root in [s, e] of an f that is positive at s, not positive at e, and falls.
+fn isolate(f: &mut Turned<'_>, s: f64, e: f64) -> Flip {
+    let (near, time) = bracket(s, e, &mut |t| f.value(t));
+    Flip { time, near, undecided: false }
+}
+
+/// Narrows [lo, hi] with f(lo) > 0 >= f(hi) to neighbouring numbers: regula falsi with halved end values (the Illinois
+/// rule), aimed a little past the root so that both ends close in, and a bisection whenever three steps have not halved
+/// the bracket.
+fn bracket(s: f64, e: f64, f: &mut dyn FnMut(f64) -> f64) -> (f64, f64) {
+    let (mut lo, mut hi) = (s, e);
+    let (mut f_lo, mut f_hi) = (f(s), f(e));
+    if f_lo.is_nan() || f_lo <= 0.0 {
+        return (lo, lo);
+    }
+    let mut last_side = 0;
+    let mut width = hi - lo;
+    for round in 0_u32.. {
+        let middle = 0.5 * (lo + hi);
+        if middle <= lo || middle >= hi {
+            break;
+        }
+        let aim = lo + (hi - lo) * (f_lo / (f_lo - f_hi));
+        let past = 2.0 * ulp(aim) * f64::from(last_side);
+        let mut t = if aim.is_finite() { aim + past } else { middle };
+        if round % 3 == 2 {
+            if hi - lo > 0.5 * width {
+                t = middle;
+            }
+            width = hi - lo;
+        }
+        t = t.clamp(lo.next_up(), hi.next_down());
+        let value = f(t);
+        if value == 0.0 {
+            return (lo, t);
+        }
+        let side = if value > 0.0 { 1 } else { -1 };
+        if side > 0 {
+            (lo, f_lo) = (t, value);
+            f_hi *= if last_side == side { 0.5 } else { 1.0 };
+        } else {
+            (hi, f_hi) = (t, value);
+            f_lo *= if last_side == side { 0.5 } else { 1.0 };
+        }
+        last_side = side;
+    }
+    (lo, hi)
+}

@@ -1,0 +1,125 @@
+//! Dense output: the trajectory of one agent over one step as a polynomial for each state.
+//!
+//! A polynomial is x(t) = sum over k of c_k theta^k with theta = (t - start) / h, where h is the length of the step as
+//! it was taken; an event may have cut the segment to a shorter [start, end]. Bounds over a stretch of time come from
+//! the polynomial moved to the middle of the stretch: x in c_0 ± sum of |c_k| r^k, widened for rounding.
+
+use crate::math::Interval;
+
+/// The trajectory of one agent over [start, end].
+#[derive(Clone, Debug, Default)]
+pub struct Segment {
+    /// s.
+    pub start: f64,
+    /// s; at most start + h.
+    pub end: f64,
+    h: f64,
+    /// Coefficients of one state after the other, lowest power first.
+    coefficients: Vec<f64>,
+    n_coefficients: usize,
+}
+
+/// The most coefficients of one state.
+const N_MAX: usize = 16;
+
+impl Segment {
+    /// A segment at rest at one instant: the state does not move from it.
+    pub fn at(t: f64, x: &[f64]) -> Self {
+        Self { start: t, end: t, h: 1.0, coefficients: x.to_vec(), n_coefficients: 1 }
+    }
+
+    /// Prepares for a step of length `h` from `t` with `n` coefficients a state, to be filled in.
+    pub fn reset(&mut self, t: f64, h: f64, end: f64, n: usize, n_states: usize) -> &mut [f64] {
+        debug_assert!(n <= N_MAX);
+        self.start = t;
+        self.end = end;
+        self.h = h;
+        self.n_coefficients = n;
+        self.coefficients.clear();
+        self.coefficients.resize(n * n_states, 0.0);
+        &mut self.coefficients
+    }
+
+    /// The states at `t`; `x` has one place for each.
+    pub fn states(&self, t: f64, x: &mut [f64]) {
+        let theta = (t - self.start) / self.h;
+        for (x, c) in x.iter_mut().zip(self.coefficients.chunks_exact(self.n_coefficients)) {
+            *x = c.iter().rev().fold(0.0, |sum, c| sum * theta + c);
+        }
+    }
+
+    /// States, their first and their second derivatives at `t`.
+    pub fn jet(&self, t: f64, x: &mut [f64], dx: &mut [f64], ddx: &mut [f64]) {
+        let theta = (t - self.start) / self.h;
+        let n = self.n_coefficients;
+        for (i, c) in self.coefficients.chunks_exact(n).enumerate() {
+            let (mut p, mut dp, mut ddp) = (0.0, 0.0, 0.0);
+            for &c in c.iter().rev() {
+                ddp = ddp * theta + dp;
+                dp = dp * theta + p;
+                p = p * theta + c;
+            }
+            x[i] = p;
+            dx[i] = dp / self.h;
+            ddx[i] = 2.0 * ddp / (self.h * self.h);
+        }
+    }
+
+    /// Bounds of the states and their first and second derivatives over [s, e].
+    pub fn jet_range(&self, s: f64, e: f64, x: &mut [Interval], dx: &mut [Interval], ddx: &mut [Interval]) {
+        let n = self.n_coefficients;
+        let from = (s - self.start) / self.h;
+        let to = (e - self.start) / self.h;
+        let middle = 0.5 * (from + to);
+        let radius = (0.5 * (to - from)).abs() * (1.0 + 1e-15);
+        let size = middle.abs().max(1.0);
+        let mut moved = [0.0; N_MAX];
+        for (i, c) in self.coefficients.chunks_exact(n).enumerate() {
+            let moved = &mut moved[..n];
+            moved.copy_from_slice(c);
+            let rounding = shift(moved, middle, size);
+            let scale = 1.0 / self.h;
+            x[i] = around(moved[0], spread(moved, radius, 0), rounding);
+            let (d, dd) = (moved.get(1).copied().unwrap_or(0.0), moved.get(2).copied().unwrap_or(0.0));
+            dx[i] = around(d * scale, spread(moved, radius, 1) * scale, rounding * scale * n as f64);
+            let rounding = rounding * scale * scale * (n * n) as f64;
+            ddx[i] = around(2.0 * dd * scale * scale, spread(moved, radius, 2) * scale * scale, rounding);
+        }
+    }
+}
+
+/// Moves a polynomial's origin to `by` (repeated synthetic division) and bounds the rounding of its coefficients.
+fn shift(c: &mut [f64], by: f64, size: f64) -> f64 {
+    let n = c.len();
+    if c[1..].iter().all(|&c| c == 0.0) {
+        return 0.0;
+    }
+    let magnitude = c.iter().rev().fold(0.0, |sum, c| sum * size + c.abs());
+    for low in 0..n.saturating_sub(1) {
+        for k in (low..n - 1).rev() {
+            c[k] += by * c[k + 1];
+        }
+    }
+    magnitude * (4 * n) as f64 * f64::EPSILON
+}
+
+/// Bounds what the terms above the first of the `order`-th derivative add within `radius` of the origin.
+fn spread(c: &[f64], radius: f64, order: usize) -> f64 {
+    let mut sum = 0.0;
+    for k in (order + 1..c.len()).rev() {
+        let falling = (k + 1 - order..=k).map(|factor| factor as f64).product::<f64>();
+        sum = sum * radius + falling * c[k].abs();
+    }
+    sum * radius
+}
+
+fn around(centre: f64, radius: f64, rounding: f64) -> Interval {
+    let radius = (radius * (1.0 + 1e-14) + rounding).next_up();
+    if radius.is_nan() || centre.is_nan() {
+        return Interval::WHOLE;
+    }
+    if radius <= f64::MIN_POSITIVE * 2.0 {
+        return Interval { lo: centre, hi: centre };
+    }
+    Interval { lo: (centre - radius).next_down(), hi: (centre + radius).next_up() }
+}
