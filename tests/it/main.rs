@@ -1,6 +1,7 @@
 //! tests
 
 mod syntax;
+mod model;
 mod codegen_systems;
 mod codegen_bits;
 mod codegen_program;

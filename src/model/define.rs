@@ -1,0 +1,291 @@
+//! Pass 2: parameters with their values, `let`s and functions, each after those that it needs.
+//!
+//! A definition is looked up while its users are checked, so its order needs no pass of its own; but a chain of lookups
+//! would recurse. The pass therefore starts with an order guessed from names alone, which leaves few lookups to wait.
+
+use rustc_hash::FxHashMap;
+
+use super::context::{Body, Context, Home, Meaning, Progress, Scope, Signature, Value};
+use super::error::{LimitError, NameError, TypeError, ValueError};
+use super::ir::{Function, Let, ModeId, Param, ParamValue, TypeId};
+use super::limits;
+use super::mentions::names_in;
+use super::order::in_order_of_need;
+use super::overrides::Given;
+use super::types::{Slot, Ty};
+use crate::base::Span;
+use crate::syntax::ast;
+
+/// Defines everything that has been declared.
+pub(super) fn define(context: &mut Context) {
+    for number in context.guessed_order() {
+        context.define(number);
+    }
+    context.collect_params();
+    context.check_overrides();
+}
+
+impl<'a> Context<'a> {
+    fn guessed_order(&self) -> Vec<usize> {
+        let mut by_name: FxHashMap<&str, Vec<usize>> = FxHashMap::default();
+        for (number, definition) in self.definitions.iter().enumerate() {
+            by_name.entry(&definition.name.text).or_default().push(number);
+        }
+        // A name that many definitions share says little about which one is meant.
+        by_name.retain(|_, numbers| numbers.len() <= 8);
+        let needs = |body: &Body<'a>| {
+            let mut names = Vec::new();
+            names_in(body.value(), &mut names);
+            names.sort_unstable();
+            names.dedup();
+            names.iter().filter_map(|name| by_name.get(name)).flatten().copied().collect()
+        };
+        let needs = self.definitions.iter().map(|definition| needs(&definition.body)).collect::<Vec<_>>();
+        in_order_of_need(&needs)
+    }
+
+    /// What a definition means; it is worked out when it is first asked for.
+    pub fn define(&mut self, number: usize) -> Meaning {
+        match self.definitions[number].progress {
+            Progress::Done(meaning) => return meaning,
+            Progress::Running => {
+                self.report_circle(number);
+                return Meaning::Failed;
+            }
+            Progress::Waiting => {}
+        }
+        if self.running.len() >= limits::WAITING_MAX {
+            let name = self.definitions[number].name;
+            self.report(LimitError::Waiting { name: name.text.clone(), span: name.span });
+            return Meaning::Failed;
+        }
+        self.definitions[number].progress = Progress::Running;
+        self.running.push(number);
+        let meaning = match self.definitions[number].body {
+            Body::Param(item) => self.define_param(item),
+            Body::Let(item) => self.define_let(item),
+            Body::Function(item) => self.define_function(item),
+            Body::AgentLet(ty, mode, item) => self.define_agent_let(ty, mode, item),
+            Body::PairLet(pair, item) => self.define_pair_let(pair, item),
+        };
+        self.running.pop();
+        self.definitions[number].progress = Progress::Done(meaning);
+        meaning
+    }
+
+    fn report_circle(&mut self, number: usize) {
+        let start = self.running.iter().position(|&running| running == number).unwrap_or(0);
+        let circle = self.running[start..].iter().map(|&k| &self.definitions[k]).collect::<Vec<_>>();
+        let names = circle.iter().map(|item| (item.name.text.clone(), item.name.span)).collect();
+        if circle.iter().all(|item| item.is_function()) {
+            self.report(NameError::Recursion { names });
+        } else {
+            self.report(NameError::Circle { names, what: "definitions need each other in a circle" });
+        }
+    }
+
+    fn define_param(&mut self, item: &'a ast::Param) -> Meaning {
+        let declared = item.ty.as_ref().map(|ty| self.slot(ty));
+        let what = format!("the value of `{}`", item.name.text);
+        let mut scope = Scope::of(Home::File);
+        let value = match declared {
+            Some(slot) => self.lower_into(&mut scope, &item.value, slot, &what),
+            None => self.lower(&mut scope, &item.value),
+        };
+        let slot = match (declared, value.ty) {
+            (Some(slot), _) => slot,
+            (None, Ty::Int) => Slot::plain(Ty::Real),
+            (None, ty) => Slot::plain(ty),
+        };
+        if value.ty == Ty::Wrong {
+            return Meaning::Failed;
+        }
+        let given = self.override_of(&item.name, slot);
+        match slot.ty {
+            Ty::Text => {
+                let text = match given {
+                    Some(Given::Text(text)) => Some(text),
+                    Some(Given::Number(_)) | None => self.text_of(&item.value),
+                };
+                self.texts.push(text.unwrap_or_default());
+                Meaning::Text(self.texts.len() - 1)
+            }
+            Ty::Real | Ty::Int | Ty::Bool => match given {
+                Some(Given::Number(number)) => Meaning::Number(number, slot.ty),
+                Some(Given::Text(_)) | None => match self.constant(value, &item.value, &what) {
+                    Some(number) => Meaning::Number(number, slot.ty),
+                    None => Meaning::Failed,
+                },
+            },
+            Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::Wrong => {
+                self.no_reference(slot.ty, "a `param`", item.value.span);
+                Meaning::Failed
+            }
+        }
+    }
+
+    /// The number that an expression is; none, and a diagnostic, if it is not a constant or not a number.
+    pub fn constant(&mut self, value: Value, expr: &ast::Expr, what: &str) -> Option<f64> {
+        if value.ty == Ty::Wrong {
+            return None;
+        }
+        if !self.facts[value.id.index()].closed {
+            self.report(ValueError::NotConstant { what: what.to_string(), span: expr.span });
+            return None;
+        }
+        let number = self.evaluate_closed(value.id)?;
+        if number.is_nan() {
+            self.report(ValueError::NotFinite { what: what.to_string(), value: number, span: expr.span });
+            return None;
+        }
+        Some(number)
+    }
+
+    /// The text that an expression is: a literal, or the name of a parameter that is one.
+    pub fn text_of(&mut self, expr: &'a ast::Expr) -> Option<String> {
+        match &expr.kind {
+            ast::ExprKind::Text(text) => Some(text.clone()),
+            ast::ExprKind::Name(name) => match self.globals.get(name.as_str())?.kind {
+                super::context::GlobalKind::Definition(number) => match self.define(number) {
+                    Meaning::Text(number) => Some(self.texts[number].clone()),
+                    _ => None,
+                },
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    fn no_reference(&mut self, ty: Ty, what: &'static str, span: Span) {
+        let found = self.describe(ty);
+        let help = "it holds a number or a truth value; a reference to an agent is a `link` or a parameter of an agent";
+        self.report(TypeError::NotAllowed { what, found, span, help });
+    }
+
+    /// The value of a `let`, which is a number or a condition.
+    fn lower_let(&mut self, scope: &mut Scope<'a>, item: &'a ast::Let) -> Value {
+        let value = match &item.ty {
+            Some(ty) => {
+                let slot = self.slot(ty);
+                let slot = self.no_text(slot, "a `let`", ty.span);
+                self.lower_into(scope, &item.value, slot, &format!("the value of `{}`", item.name.text))
+            }
+            None => self.lower(scope, &item.value),
+        };
+        match value.ty {
+            Ty::Real | Ty::Int | Ty::Bool | Ty::Wrong => value,
+            Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody => {
+                self.no_reference(value.ty, "a `let`", item.value.span);
+                Value { ty: Ty::Wrong, ..value }
+            }
+        }
+    }
+
+    fn define_let(&mut self, item: &'a ast::Let) -> Meaning {
+        let value = self.lower_let(&mut Scope::of(Home::File), item);
+        if value.ty == Ty::Wrong {
+            return Meaning::Failed;
+        }
+        if !self.facts[value.id.index()].closed {
+            return Meaning::Shared(value);
+        }
+        match self.constant(value, &item.value, &format!("the value of `{}`", item.name.text)) {
+            Some(number) => Meaning::Number(number, value.ty),
+            None => Meaning::Failed,
+        }
+    }
+
+    fn define_pair_let(&mut self, pair: usize, item: &'a ast::Let) -> Meaning {
+        let value = self.lower_let(&mut Scope::of(Home::Pair(pair)), item);
+        if value.ty == Ty::Wrong { Meaning::Failed } else { Meaning::Shared(value) }
+    }
+
+    fn define_agent_let(&mut self, ty: TypeId, mode: ModeId, item: &'a ast::Let) -> Meaning {
+        let value = self.lower_let(&mut Scope::of(Home::Agent(ty, mode)), item);
+        if value.ty == Ty::Wrong {
+            return Meaning::Failed;
+        }
+        let unit = item.ty.as_ref().and_then(|ty| ty.unit.as_ref());
+        let factor =
+            unit.and_then(|unit| super::units::parse(&unit.text).ok()).map_or(1.0, |unit| unit.factor());
+        let lets = &mut self.model.types[ty].lets;
+        lets.push(Let {
+            name: item.name.text.clone(),
+            mode,
+            value: value.id,
+            unit: unit.map(|unit| unit.text.clone()),
+            factor,
+            span: item.name.span,
+        });
+        Meaning::Let(lets.len() - 1, value.ty)
+    }
+
+    fn define_function(&mut self, item: &'a ast::Fn) -> Meaning {
+        let mut scope = Scope::of(Home::Function);
+        let mut formals: Vec<(Slot, Option<Value>)> = Vec::new();
+        for (k, formal) in item.formals.iter().enumerate() {
+            let slot = self.slot(&formal.ty);
+            let mut slot = self.no_text(slot, "a parameter of a function", formal.ty.span);
+            // A function takes an agent that may be none as well, and reads NaN from it.
+            if let Ty::Agent(ty) = slot.ty {
+                slot.ty = Ty::Link(ty);
+            }
+            if let Some(first) =
+                item.formals[..k].iter().find(|earlier| earlier.name.text == formal.name.text)
+            {
+                let (name, span, first) = (formal.name.text.clone(), formal.name.span, first.name.span);
+                self.report(NameError::Taken { name, span, first });
+            }
+            let what = format!("the default of `{}`", formal.name.text);
+            let default = formal.default.as_ref();
+            let default =
+                default.map(|value| self.lower_into(&mut Scope::of(Home::File), value, slot, &what));
+            if let (None, Some((_, Some(_)))) = (default, formals.last()) {
+                let (name, span) = (formal.name.text.clone(), formal.name.span);
+                self.report(NameError::DefaultsLast { name, span });
+            }
+            scope.locals.push((&formal.name.text, slot.ty));
+            formals.push((slot, default));
+        }
+        let declared = item.ty.as_ref().map(|ty| self.slot(ty));
+        let body = match declared {
+            Some(slot) => {
+                let what = format!("the value of `{}`", item.name.text);
+                self.lower_into(&mut scope, &item.body, slot, &what)
+            }
+            None => self.lower(&mut scope, &item.body),
+        };
+        if matches!(body.ty, Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody) {
+            self.no_reference(body.ty, "the value of a function", item.body.span);
+            return Meaning::Failed;
+        }
+        if body.ty == Ty::Wrong || formals.iter().any(|(slot, _)| slot.ty == Ty::Wrong) {
+            return Meaning::Failed;
+        }
+        let names = item.formals.iter().map(|formal| formal.name.text.clone());
+        let params = names.zip(formals.iter().map(|(slot, _)| slot.ty.ir())).collect();
+        self.signatures.push(Signature { formals, result: body.ty });
+        let (name, span) = (item.name.text.clone(), item.name.span);
+        Meaning::Function(self.model.functions.push(Function { name, params, body: body.id, span }))
+    }
+
+    fn collect_params(&mut self) {
+        for definition in &self.definitions {
+            let (Body::Param(item), Progress::Done(meaning)) = (definition.body, definition.progress) else {
+                continue;
+            };
+            let (value, ty) = match meaning {
+                Meaning::Number(value, ty) => (ParamValue::Number(value), ty.ir()),
+                Meaning::Text(number) => (ParamValue::Text(self.texts[number].clone()), Ty::Text.ir()),
+                Meaning::Shared(_) | Meaning::Function(_) | Meaning::Let(..) | Meaning::Failed => continue,
+            };
+            self.model.params.push(Param {
+                name: item.name.text.clone(),
+                ty,
+                unit: item.ty.as_ref().and_then(|ty| ty.unit.as_ref()).map(|unit| unit.text.clone()),
+                value,
+                span: item.name.span,
+            });
+        }
+    }
+}

@@ -1,0 +1,324 @@
+//! The model as text, for `hyc show --stage model`: everything that later floors get, names resolved, values in SI.
+//!
+//! Of the agents of a block the first three are written.
+
+use std::fmt::Write;
+
+use super::formula::{Formulas, Names, number_text};
+use super::ir::{
+    Action, AgentType, Claim, Instance, Interaction, Mode, ModeId, Model, ParamValue, Population, Record,
+    Run, Transition, Trigger, Type, VarRef, Variable,
+};
+
+/// How many agents of a block are written.
+const AGENTS_SHOWN: usize = 3;
+
+/// The whole model as text.
+pub fn dump(model: &Model) -> String {
+    let mut writer = Writer { model, formulas: Formulas::new(model), out: String::new() };
+    writer.params();
+    for function in &model.functions {
+        let params = function.params.iter().map(|(name, ty)| format!("{name}: {}", writer.ty(*ty)));
+        let params = params.collect::<Vec<_>>().join(", ");
+        let names = Names { locals: &function.params, pair: None };
+        let body = writer.formulas.text(function.body, names);
+        let ty = writer.ty(model.exprs[function.body].ty);
+        writer.line(0, &format!("fn {}({params}): {ty} = {body}", function.name));
+    }
+    for ty in &model.types {
+        writer.agent(ty);
+    }
+    for interaction in &model.interactions {
+        writer.interaction(interaction);
+    }
+    let shared = writer.formulas.shared(Names::default());
+    for (id, text) in shared {
+        writer.line(0, &format!("#{} = {text}", id.index()));
+    }
+    writer.population(&model.population);
+    writer.run(&model.run);
+    writer.out
+}
+
+struct Writer<'m> {
+    model: &'m Model,
+    formulas: Formulas<'m>,
+    out: String,
+}
+
+impl<'m> Writer<'m> {
+    fn line(&mut self, depth: usize, text: &str) {
+        let _ = writeln!(self.out, "{:width$}{text}", "", width = 2 * depth);
+    }
+
+    fn ty(&self, ty: Type) -> String {
+        match ty {
+            Type::Real => "real".to_string(),
+            Type::Int => "int".to_string(),
+            Type::Bool => "bool".to_string(),
+            Type::Agent(ty) => self.model.types[ty].name.clone(),
+            Type::Link(ty) => format!("{} or none", self.model.types[ty].name),
+        }
+    }
+
+    fn params(&mut self) {
+        for param in &self.model.params {
+            let unit = unit_text(param.unit.as_deref(), None);
+            let (ty, value) = match &param.value {
+                ParamValue::Text(text) => ("string".to_string(), format!("\"{text}\"")),
+                ParamValue::Number(value) => (self.ty(param.ty), number(*value, param.ty)),
+            };
+            self.line(0, &format!("param {}: {ty}{unit} = {value}", param.name));
+        }
+    }
+
+    fn agent(&mut self, ty: &'m AgentType) {
+        self.line(0, &format!("agent {}", ty.name));
+        for (word, variables) in [("param", &ty.params), ("state", &ty.states), ("discrete", &ty.discretes)] {
+            for Variable { name, ty, unit, factor, .. } in variables {
+                let text =
+                    format!("{word} {name}: {}{}", self.ty(*ty), unit_text(unit.as_deref(), Some(*factor)));
+                self.line(1, &text);
+            }
+        }
+        for link in &ty.links {
+            let none = if link.required { "" } else { " or none" };
+            let target = &self.model.types[link.ty].name;
+            self.line(1, &format!("link {}: {target}{none}", link.name));
+        }
+        for item in &ty.lets {
+            let of = self.ty(self.model.exprs[item.value].ty);
+            let unit = unit_text(item.unit.as_deref(), Some(item.factor));
+            let path = &ty.modes[item.mode].path;
+            let place = if path.is_empty() { String::new() } else { format!("{path}: ") };
+            let value = self.formulas.text(item.value, Names::default());
+            self.line(1, &format!("let {place}{}: {of}{unit} = {value}", item.name));
+        }
+        let declared = ty.declared.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
+        self.line(1, &format!("declared {declared}"));
+        self.mode(ty, ModeId::new(0), 1);
+        for transition in &ty.transitions {
+            self.transition(transition, Some(ty), Names::default());
+        }
+    }
+
+    fn mode(&mut self, ty: &'m AgentType, id: ModeId, depth: usize) {
+        let mode: &Mode = &ty.modes[id];
+        let inside = match mode.parent {
+            None => depth,
+            Some(parent) => {
+                let initial = if ty.modes[parent].initial == Some(id) { "initial " } else { "" };
+                self.line(depth, &format!("{initial}mode {}", mode.path));
+                depth + 1
+            }
+        };
+        for (state, rate, _) in &mode.flow {
+            let rate = self.formulas.text(*rate, Names::default());
+            self.line(inside, &format!("flow {}' = {rate}", ty.states[*state].name));
+        }
+        for (word, claims) in [("invariant", &mode.invariants), ("assert", &mode.asserts)] {
+            for Claim { condition, message, .. } in claims {
+                let message = message.as_ref().map_or(String::new(), |text| format!(" \"{text}\""));
+                let condition = self.formulas.text(*condition, Names::default());
+                self.line(inside, &format!("{word} {condition}{message}"));
+            }
+        }
+        for (word, actions) in [("entry", &mode.entry), ("exit", &mode.exit)] {
+            if !actions.is_empty() {
+                self.line(inside, word);
+                self.actions(actions, Names::default(), inside + 1);
+            }
+        }
+        for child in &mode.children {
+            self.mode(ty, *child, inside);
+        }
+    }
+
+    fn transition(&mut self, item: &Transition, ty: Option<&AgentType>, names: Names) {
+        let (word, value, guard) = match &item.trigger {
+            Trigger::When(guard) => ("", None, Some(*guard)),
+            Trigger::After(delay, guard) => (" after ", Some(*delay), *guard),
+            Trigger::Every(period, guard) => (" every ", Some(*period), *guard),
+        };
+        let mut text = format!("{}:{word}", item.label);
+        if let Some(value) = value {
+            text.push_str(&self.formulas.text(value, names));
+        }
+        if let Some(guard) = guard {
+            text.push_str(" when ");
+            text.push_str(&self.formulas.text(guard, names));
+        }
+        if let Some(priority) = item.priority {
+            text.push_str(" priority ");
+            text.push_str(&self.formulas.text(priority, names));
+        }
+        if let Some(ty) = ty {
+            let path = |mode: ModeId| if mode.index() == 0 { "*" } else { ty.modes[mode].path.as_str() };
+            match item.target {
+                Some(target) => text.push_str(&format!(" [{} -> {}]", path(item.source), path(target))),
+                None => text.push_str(&format!(" [{}]", path(item.source))),
+            }
+        }
+        if !item.witnesses.is_empty() {
+            let names = item.witnesses.iter().map(|&binder| self.model.binders[binder].name.as_str());
+            text.push_str(&format!(" witness {}", names.collect::<Vec<_>>().join(", ")));
+        }
+        self.line(1, &text);
+        self.actions(&item.actions, names, 2);
+    }
+
+    fn actions(&mut self, actions: &[Action], names: Names, depth: usize) {
+        for action in actions {
+            match action {
+                Action::Assign { agent, variable, value, .. } => {
+                    let owner = match self.model.exprs[*agent].ty {
+                        Type::Agent(owner) => &self.model.types[owner],
+                        Type::Real | Type::Int | Type::Bool | Type::Link(_) => continue,
+                    };
+                    let agent = self.formulas.text(*agent, names);
+                    let value = self.formulas.text(*value, names);
+                    self.line(depth, &format!("{agent}.{} := {value}", variable_name(owner, *variable)));
+                }
+                Action::If { condition, then, otherwise } => {
+                    let condition = self.formulas.text(*condition, names);
+                    self.line(depth, &format!("if {condition}"));
+                    self.actions(then, names, depth + 1);
+                    if !otherwise.is_empty() {
+                        self.line(depth, "else");
+                        self.actions(otherwise, names, depth + 1);
+                    }
+                }
+                Action::Goto { participant, target, .. } => {
+                    let Some(pair) = names.pair else { continue };
+                    let path = &self.model.types[pair.types[*participant]].modes[*target].path;
+                    self.line(depth, &format!("{} -> {path}", pair.participants[*participant]));
+                }
+                Action::Stop { reason, .. } => {
+                    let reason = reason.as_ref().map_or(String::new(), |text| format!(" \"{text}\""));
+                    self.line(depth, &format!("stop{reason}"));
+                }
+            }
+        }
+    }
+
+    fn interaction(&mut self, item: &'m Interaction) {
+        let [a, b] = &item.participants;
+        let [first, second] = item.types.map(|ty| self.model.types[ty].name.clone());
+        self.line(0, &format!("interaction {}({a}: {first}, {b}: {second})", item.name));
+        for transition in &item.transitions {
+            let names = Names { locals: &[], pair: Some(item) };
+            self.transition(transition, None, names);
+        }
+    }
+
+    fn population(&mut self, population: &Population) {
+        self.line(0, &format!("population of {}", population.agents.len()));
+        for block in &population.blocks {
+            let ty = &self.model.types[block.ty].name;
+            let size = if block.array { format!("[{}]", block.count) } else { String::new() };
+            self.line(1, &format!("{} = {ty}{size}, from number {}", block.name, block.first));
+            for index in 0..block.count.min(AGENTS_SHOWN) {
+                let place = if block.array { format!("[{index}]") } else { String::new() };
+                let text = format!(
+                    "{}{place}{}",
+                    block.name,
+                    self.instance(&population.agents[block.first + index])
+                );
+                self.line(2, &text);
+            }
+            if block.count > AGENTS_SHOWN {
+                self.line(2, &format!("... and {} more", block.count - AGENTS_SHOWN));
+            }
+        }
+    }
+
+    fn instance(&self, agent: &Instance) -> String {
+        let ty = &self.model.types[agent.ty];
+        let mut text = String::new();
+        let parts =
+            [(&ty.params, &agent.params), (&ty.states, &agent.states), (&ty.discretes, &agent.discretes)];
+        for (variables, values) in parts {
+            for (variable, value) in variables.iter().zip(values) {
+                text.push_str(&format!(" {}={}", variable.name, number(*value, variable.ty)));
+            }
+        }
+        for (link, target) in ty.links.iter().zip(&agent.links) {
+            let target = target.map_or("none".to_string(), |number| self.agent_name(number));
+            text.push_str(&format!(" {}={target}", link.name));
+        }
+        let mode = &ty.modes[agent.mode];
+        let mode = if mode.path.is_empty() { String::new() } else { format!(" in {}", mode.path) };
+        if text.is_empty() { mode } else { format!(":{text}{mode}") }
+    }
+
+    fn agent_name(&self, agent: usize) -> String {
+        let blocks = &self.model.population.blocks;
+        let block = blocks.iter().find(|block| (block.first..block.first + block.count).contains(&agent));
+        block.map_or(String::new(), |block| super::make::instance_name(block, agent - block.first))
+    }
+
+    fn run(&mut self, run: &Run) {
+        let or_none = |value: Option<f64>| value.map_or("none".to_string(), number_text);
+        let (until, absolute) = (or_none(run.until), or_none(run.absolute));
+        let line = format!(
+            "run until {until} tolerance {} absolute {absolute} seed {}",
+            number_text(run.tolerance),
+            run.seed
+        );
+        self.line(0, &line);
+        for record in &run.records {
+            self.record(record);
+        }
+        if let Some(events) = &run.events {
+            self.line(1, &format!("events to \"{events}\""));
+        }
+    }
+
+    fn record(&mut self, record: &Record) {
+        let every = record.every.map_or("step and event".to_string(), |every| format!("{every} s"));
+        let file =
+            record.file.as_ref().map_or("the command line's file".to_string(), |file| format!("\"{file}\""));
+        let shown = record.agents.iter().take(2 * AGENTS_SHOWN).map(|&agent| self.agent_name(agent));
+        let mut agents = shown.collect::<Vec<_>>().join(", ");
+        if record.agents.len() > 2 * AGENTS_SHOWN {
+            agents.push_str(&format!(" and {} more", record.agents.len() - 2 * AGENTS_SHOWN));
+        }
+        let columns = record.columns.join(", ");
+        self.line(1, &format!("record {columns} of {agents} every {every} to {file}"));
+        for (ty, variables) in self.model.types.iter().zip(&record.variables) {
+            if variables.iter().any(|variable| variable.is_none()) && variables.iter().any(Option::is_some) {
+                let names = variables
+                    .iter()
+                    .map(|variable| variable.map_or("-", |variable| variable_name(ty, variable)));
+                let names = names.collect::<Vec<_>>().join(", ");
+                self.line(2, &format!("{}: {names}", ty.name));
+            }
+        }
+    }
+}
+
+fn variable_name(ty: &AgentType, variable: VarRef) -> &str {
+    match variable {
+        VarRef::State(number) => &ty.states[number].name,
+        VarRef::Discrete(number) => &ty.discretes[number].name,
+        VarRef::Param(number) => &ty.params[number].name,
+        VarRef::Link(number) => &ty.links[number].name,
+        VarRef::Let(number) => &ty.lets[number].name,
+    }
+}
+
+fn number(value: f64, ty: Type) -> String {
+    match ty {
+        Type::Bool => (value != 0.0).to_string(),
+        Type::Real | Type::Int | Type::Agent(_) | Type::Link(_) => number_text(value),
+    }
+}
+
+/// ` [km/h = 0.2777777777777778]`: the declared unit and what it is in SI.
+fn unit_text(unit: Option<&str>, factor: Option<f64>) -> String {
+    match (unit, factor) {
+        (None, _) => String::new(),
+        (Some(unit), Some(factor)) if factor != 1.0 => format!(" [{unit} = {factor} in SI]"),
+        (Some(unit), _) => format!(" [{unit}]"),
+    }
+}

@@ -1,0 +1,276 @@
+//! Failures of constants, of the command line's values, of `system` with its data files, of `run`; and the limits.
+
+use super::with_similar;
+use crate::base::{Diagnostic, Span};
+
+/// What is wrong with a value from the command line.
+pub(in crate::model) enum OverrideError {
+    /// `-p` names no parameter.
+    Unknown { name: String, span: Span, similar: Option<String>, other: Option<Span> },
+    /// `-p` gives a value that the parameter cannot take.
+    Bad { name: String, expected: &'static str, span: Span, declared: Span },
+}
+
+impl From<OverrideError> for Diagnostic {
+    fn from(error: OverrideError) -> Self {
+        match error {
+            OverrideError::Unknown { name, span, similar, other } => {
+                let unknown = Diagnostic::error("HY0260", format!("the model has no parameter `{name}`"))
+                    .label(span, "given by `-p`");
+                match other {
+                    Some(declared) => unknown
+                        .label(declared, "not a `param`")
+                        .help(format!("declare it `param {name} = ...` to set it from the command line")),
+                    None => with_similar(unknown, &similar),
+                }
+            }
+            OverrideError::Bad { name, expected, span, declared } => {
+                Diagnostic::error("HY0261", format!("the value of `{name}` must be {expected}"))
+                    .label(span, format!("not {expected}"))
+                    .label(declared, "declared here")
+            }
+        }
+    }
+}
+
+/// What is wrong with a constant or an initial value.
+pub(in crate::model) enum ValueError {
+    /// Something that must be known now reads time or agents.
+    NotConstant { what: String, span: Span },
+    /// Not a number, or infinite where that is impossible.
+    NotFinite { what: String, value: f64, span: Span },
+    /// An initial value or a default reads something that is not there yet.
+    NotInitial { what: String, read: &'static str, span: Span },
+    /// A count that is not a whole number, or negative.
+    BadCount { value: f64, span: Span },
+}
+
+impl From<ValueError> for Diagnostic {
+    fn from(error: ValueError) -> Self {
+        match error {
+            ValueError::NotConstant { what, span } => {
+                Diagnostic::error("HY0262", format!("{what} must be a constant"))
+                    .label(span, "reads time or an agent")
+                    .help("it is worked out once, before the run: it may read `param`s and constant `let`s")
+            }
+            ValueError::NotFinite { what, value, span } => {
+                Diagnostic::error("HY0263", format!("{what} is {}", in_words(value)))
+                    .label(span, "worked out here")
+            }
+            ValueError::NotInitial { what, read, span } => {
+                Diagnostic::error("HY0264", format!("{what} cannot read {read}"))
+                    .label(span, "not known while the agent is made")
+                    .help("it may read parameters, `index` and the agent's other initial values")
+            }
+            ValueError::BadCount { value, span } => {
+                Diagnostic::error("HY0265", "the size of an array must be a whole number from 0 on")
+                    .label(span, format!("this is {value}"))
+            }
+        }
+    }
+}
+
+/// What is wrong with an agent that `system` makes.
+pub(in crate::model) enum SystemError {
+    /// No value for something without a default.
+    Missing { kind: &'static str, name: String, agent: String, span: Span, declared: Span },
+    /// An argument that the agent type has no place for.
+    UnknownArgument { name: String, agent: String, span: Span, similar: Option<String>, is_let: bool },
+    /// Two values for one variable.
+    GivenTwice { name: String, span: Span, first: Span, help: &'static str },
+    /// An index beyond its array.
+    OutOfRange { array: String, count: usize, index: f64, instance: String, span: Span },
+    /// A parameter of agent type that turns out to be none.
+    RequiredNone { name: String, instance: String, span: Span },
+    /// `Car[]` without a data file.
+    NoRows { agent: String, span: Span },
+    /// Something that names no agent.
+    NotAnInstance { span: Span, found: String, similar: Option<String> },
+}
+
+impl From<SystemError> for Diagnostic {
+    fn from(error: SystemError) -> Self {
+        match error {
+            SystemError::Missing { kind, name, agent, span, declared } => {
+                Diagnostic::error("HY0266", format!("`{agent}` needs a value for its {kind} `{name}`"))
+                    .label(span, format!("no `{name}` here"))
+                    .label(declared, "declared without a value")
+                    .help(format!("write `{agent}({name} = ...)`, or give it a value where it is declared"))
+            }
+            SystemError::UnknownArgument { name, agent, span, similar, is_let } => {
+                let unknown = Diagnostic::error(
+                    "HY0267",
+                    format!("agent `{agent}` has nothing to set called `{name}`"),
+                )
+                .label(span, "not a parameter, a state, a discrete variable or a link");
+                if is_let {
+                    return unknown.help(format!("`{name}` is a `let`: it follows from other values"));
+                }
+                with_similar(unknown, &similar)
+            }
+            SystemError::GivenTwice { name, span, first, help } => {
+                Diagnostic::error("HY0268", format!("`{name}` is given twice"))
+                    .label(span, "the second time")
+                    .label(first, "the first time")
+                    .help(help)
+            }
+            SystemError::OutOfRange { array, count, index, instance, span } => {
+                let title = format!("`{array}[{index}]` does not exist, for `{instance}`");
+                Diagnostic::error("HY0269", title)
+                    .label(span, format!("`{array}` has {count} agents, numbered from 0"))
+                    .help("for those at the end write `if index >= 1 then cars[index - 1] else none`")
+            }
+            SystemError::RequiredNone { name, instance, span } => {
+                Diagnostic::error("HY0270", format!("`{name}` of `{instance}` is none"))
+                    .label(span, "none here")
+                    .help("a parameter of agent type is never none; what may be none is declared as a `link`")
+            }
+            SystemError::NoRows { agent, span } => {
+                Diagnostic::error("HY0277", format!("`{agent}[]` has no data file to count its rows"))
+                    .label(span, "how many?")
+                    .help(format!("write `{agent}[10]`, or `{agent}[] from csv(\"file.csv\")`"))
+            }
+            SystemError::NotAnInstance { span, found, similar } => with_similar(
+                Diagnostic::error("HY0271", "an agent of `system` is needed")
+                    .label(span, format!("this is {found}")),
+                &similar,
+            ),
+        }
+    }
+}
+
+/// What is wrong with a data file.
+pub(in crate::model) enum FileError {
+    /// A file that cannot be read.
+    Unreadable { path: String, why: String, span: Span },
+    /// Not a CSV file.
+    Malformed { why: String, span: Span },
+    /// A column that matches nothing.
+    UnknownColumn { name: String, agent: String, span: Span, similar: Option<String>, used: Span },
+    /// Fewer rows than agents.
+    TooFewRows { needed: usize, found: usize, span: Span, used: Span },
+    /// A cell that is empty, missing, or no value of its variable's type.
+    BadCell { column: String, expected: &'static str, found: Option<String>, span: Span },
+}
+
+impl From<FileError> for Diagnostic {
+    fn from(error: FileError) -> Self {
+        match error {
+            FileError::Unreadable { path, why, span } => {
+                Diagnostic::error("HY0272", format!("cannot read `{path}`: {why}"))
+                    .label(span, "named here")
+                    .help("paths are relative to the model file")
+            }
+            FileError::Malformed { why, span } => {
+                Diagnostic::error("HY0273", format!("not a CSV file with a header line: {why}"))
+                    .label(span, "here")
+            }
+            FileError::UnknownColumn { name, agent, span, similar, used } => {
+                let unknown =
+                    Diagnostic::error("HY0274", format!("agent `{agent}` has no place for column `{name}`"))
+                        .label(span, "not a parameter, a state or a discrete variable")
+                        .label(used, "the data is used here");
+                match similar {
+                    Some(similar) => unknown.help(format!("did you mean `{similar}`?")),
+                    None => unknown.help(format!("a column that begins with `_` is passed over: `_{name}`")),
+                }
+            }
+            FileError::TooFewRows { needed, found, span, used } => Diagnostic::error(
+                "HY0275",
+                format!("{needed} agents need {needed} rows, and there are {found}"),
+            )
+            .label(used, format!("{needed} agents"))
+            .label(span, "the last row")
+            .help("empty brackets make one agent for each row: `Car[] from csv(...)`"),
+            FileError::BadCell { column, expected, found, span } => {
+                let found = found.map_or("nothing here".to_string(), |text| format!("`{text}` is not"));
+                Diagnostic::error("HY0276", format!("column `{column}` needs {expected} in every row"))
+                    .label(span, found)
+            }
+        }
+    }
+}
+
+/// A limit that the model exceeds.
+pub(in crate::model) enum LimitError {
+    /// More agents than the limit.
+    Agents { count: f64, most: usize, span: Span },
+    /// Constants that take too long.
+    Steps { span: Span },
+    /// More expressions than the limit.
+    Expressions { span: Span },
+    /// Definitions that wait for each other through many agents.
+    Waiting { name: String, span: Span },
+}
+
+impl From<LimitError> for Diagnostic {
+    fn from(error: LimitError) -> Self {
+        match error {
+            LimitError::Agents { count, most, span } => {
+                Diagnostic::error("HY0291", format!("{count} agents are more than the limit of {most}"))
+                    .label(span, "too many")
+            }
+            LimitError::Steps { span } => {
+                Diagnostic::error("HY0292", "the constants of this model take too long to work out")
+                    .label(span, "gave up here")
+                    .help("functions that call each other twice or more double the work at every level")
+            }
+            LimitError::Expressions { span } => {
+                Diagnostic::error("HY0293", "the model has too many expressions").label(span, "the first one too many")
+            }
+            LimitError::Waiting { name, span } => {
+                Diagnostic::error("HY0294", format!("`{name}` is defined through too many other definitions"))
+                    .label(span, "gave up here")
+                    .help("declare the types of some of them, or define those that are read before those that read them")
+            }
+        }
+    }
+}
+
+fn in_words(value: f64) -> &'static str {
+    if value.is_nan() { "not a number (NaN)" } else { "infinite" }
+}
+
+/// What is wrong with `run`.
+pub(in crate::model) enum RunError {
+    /// No such setting.
+    Unknown { name: String, span: Span, similar: Option<String> },
+    /// A value that the setting cannot take.
+    OutOfRange { name: String, needs: &'static str, value: f64, span: Span },
+    /// Set twice.
+    Twice { name: String, span: Span, first: Span },
+    /// Something that has nothing to record.
+    NotRecordable { found: String, span: Span, similar: Option<String> },
+}
+
+impl From<RunError> for Diagnostic {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Unknown { name, span, similar } => with_similar(
+                Diagnostic::error("HY0280", format!("`run` has no setting `{name}`"))
+                    .label(span, "not known"),
+                &similar,
+            ),
+            RunError::OutOfRange { name, needs, value, span } => {
+                Diagnostic::error("HY0281", format!("`{name}` must be {needs}"))
+                    .label(span, format!("this is {value}"))
+            }
+            RunError::Twice { name, span, first } => {
+                Diagnostic::error("HY0282", format!("`{name}` is set twice"))
+                    .label(span, "the second time")
+                    .label(first, "the first time")
+                    .help("leave one of them out")
+            }
+            RunError::NotRecordable { found, span, similar } => {
+                let unknown = Diagnostic::error("HY0283", format!("{found} cannot be recorded"))
+                    .label(span, "not an agent, an agent type, or a variable of one");
+                match similar {
+                    Some(similar) => unknown.help(format!("did you mean `{similar}`?")),
+                    None => {
+                        unknown.help("record `cars`, `cars[3]`, `Car`, or one variable: `cars.x`, `Car.x`")
+                    }
+                }
+            }
+        }
+    }
+}

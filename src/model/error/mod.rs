@@ -1,0 +1,36 @@
+//! What can be wrong with a model: a variant per failure, each with its own code, and how each is told.
+
+pub(super) mod names;
+pub(super) mod types;
+pub(super) mod modes;
+pub(super) mod data;
+
+pub(super) use data::{FileError, LimitError, OverrideError, RunError, SystemError, ValueError};
+pub(super) use modes::{ActionError, ModeError};
+pub(super) use names::NameError;
+pub(super) use types::TypeError;
+
+use crate::base::{Diagnostic, Span};
+
+/// A construct of the language whose meaning is not built yet (HY0290).
+pub(super) struct Unsupported {
+    /// In the plural, "`rate` transitions".
+    pub what: String,
+    /// Where it stands.
+    pub span: Span,
+}
+
+impl From<Unsupported> for Diagnostic {
+    fn from(Unsupported { what, span }: Unsupported) -> Self {
+        Diagnostic::error("HY0290", format!("{what} are not supported yet"))
+            .label(span, "this parses, but cannot run")
+    }
+}
+
+/// "did you mean", as a help.
+fn with_similar(diagnostic: Diagnostic, similar: &Option<String>) -> Diagnostic {
+    match similar {
+        Some(similar) => diagnostic.help(format!("did you mean `{similar}`?")),
+        None => diagnostic,
+    }
+}

@@ -1,0 +1,373 @@
+//! From expressions of the text to expressions of the product: literals, operators, conditions, conversions.
+//!
+//! The lowering recurses over the nesting of the text, which the parser bounds; chains are loops. Whatever is wrong is
+//! reported once and becomes a value of type [`Ty::Wrong`], which goes with everything.
+
+use super::context::{Context, Scope, Value};
+use super::error::TypeError;
+use super::ir::ExprKind;
+use super::types::{Slot, Ty};
+use crate::base::Span;
+use crate::math::Op;
+use crate::syntax::ast::{self, CompareOp, ProductOp, SumOp, UnaryOp};
+
+impl<'a> Context<'a> {
+    /// Checks an expression and adds it to the product.
+    pub fn lower(&mut self, scope: &mut Scope<'a>, expr: &'a ast::Expr) -> Value {
+        let span = expr.span;
+        match &expr.kind {
+            ast::ExprKind::Number { value, text, unit } => {
+                self.lower_literal(*value, text, unit.as_ref(), span)
+            }
+            ast::ExprKind::Text(_) => self.number(0.0, Ty::Text, span),
+            ast::ExprKind::Name(name) => self.lower_name(scope, name, span),
+            ast::ExprKind::List(_) => {
+                self.refuse("lists", span);
+                self.wrong(span)
+            }
+            ast::ExprKind::Field(base, name) => self.lower_field(scope, base, name, span),
+            ast::ExprKind::Call { callee, args } => self.lower_call(scope, callee, args, span),
+            ast::ExprKind::Index(base, _) => self.lower_index(scope, base, span),
+            ast::ExprKind::Prime(state) => self.lower_prime(scope, state, span),
+            ast::ExprKind::Unary(UnaryOp::Neg, operand) => self.lower_negation(scope, operand, span),
+            ast::ExprKind::Unary(UnaryOp::Not, operand) => {
+                let condition = self.lower_condition(scope, operand);
+                self.apply(Op::Not, vec![condition.id], condition.ty, span)
+            }
+            ast::ExprKind::Power(base, exponent) => self.lower_power(scope, base, exponent, span),
+            ast::ExprKind::Sum(chain) => self.lower_sum(scope, chain),
+            ast::ExprKind::Product(chain) => self.lower_product(scope, chain),
+            ast::ExprKind::Compare(op, left, right) => self.lower_comparison(scope, *op, left, right, span),
+            ast::ExprKind::Is(agent, target) => self.lower_is(scope, agent, target, span),
+            ast::ExprKind::And(terms) => self.lower_terms(scope, Op::And, terms),
+            ast::ExprKind::Or(terms) => self.lower_terms(scope, Op::Or, terms),
+            ast::ExprKind::If { condition, then, otherwise } => {
+                self.lower_if(scope, condition, then, otherwise, span)
+            }
+            ast::ExprKind::Quantifier(quantifier) => self.lower_quantifier(scope, quantifier, span),
+        }
+    }
+
+    /// An expression that goes into something with a declared type; a bare literal takes the declared unit. `what` names
+    /// it at the beginning of a sentence.
+    pub fn lower_into(
+        &mut self,
+        scope: &mut Scope<'a>,
+        expr: &'a ast::Expr,
+        slot: Slot,
+        what: &str,
+    ) -> Value {
+        if let (Ty::Real, Some(value)) = (slot.ty, bare_literal(expr)) {
+            let value = slot.unit.si(value);
+            if !value.is_finite() {
+                self.report(TypeError::TooLarge { span: expr.span });
+            }
+            return self.number(value, Ty::Real, expr.span);
+        }
+        let value = self.lower(scope, expr);
+        self.fit(value, slot.ty, expr.span, what)
+    }
+
+    /// Converts a value to the type that is wanted, or reports that it cannot be.
+    pub fn fit(&mut self, value: Value, want: Ty, span: Span, what: &str) -> Value {
+        let fits = match (want, value.ty) {
+            (Ty::Wrong, _) | (_, Ty::Wrong) => return Value { ty: Ty::Wrong, ..value },
+            (Ty::Real, Ty::Int) => true,
+            (Ty::Link(wanted), Ty::Agent(found)) => wanted == found,
+            (Ty::Link(_), Ty::Nobody) => {
+                self.model.exprs[value.id].ty = want.ir();
+                true
+            }
+            (wanted, found) => wanted == found,
+        };
+        if fits {
+            return Value { ty: want, ..value };
+        }
+        let what = what.to_string();
+        if (want, value.ty) == (Ty::Int, Ty::Real) {
+            let text = self.sources.text(span).to_string();
+            self.report(TypeError::RealToInt { what, span, text });
+        } else {
+            let help = matches!((want, value.ty), (Ty::Agent(wanted), Ty::Link(found)) if wanted == found)
+                .then(|| "declare a `link` instead, which may be none".to_string());
+            let (expected, found) = (self.describe(want), self.describe(value.ty));
+            self.report(TypeError::Mismatch { what, expected, found, span, help });
+        }
+        Value { ty: Ty::Wrong, ..value }
+    }
+
+    /// An expression that must be a number.
+    pub fn lower_number(&mut self, scope: &mut Scope<'a>, expr: &'a ast::Expr, operator: &str) -> Value {
+        let value = self.lower(scope, expr);
+        if value.ty.is_number() || value.ty == Ty::Wrong {
+            return value;
+        }
+        let found = self.describe(value.ty);
+        let operator = operator.to_string();
+        self.report(TypeError::Operand { operator, needs: "numbers", found, span: expr.span });
+        Value { ty: Ty::Wrong, ..value }
+    }
+
+    /// An expression that must be a condition; a link is one (whether it leads anywhere).
+    pub fn lower_condition(&mut self, scope: &mut Scope<'a>, expr: &'a ast::Expr) -> Value {
+        let value = self.lower(scope, expr);
+        self.as_condition(value, expr.span)
+    }
+
+    fn as_condition(&mut self, value: Value, span: Span) -> Value {
+        match value.ty {
+            Ty::Bool | Ty::Wrong => value,
+            Ty::Link(_) => self.push(ExprKind::Present(value.id), Ty::Bool, span),
+            Ty::Agent(_) => self.number(1.0, Ty::Bool, span),
+            Ty::Nobody => self.number(0.0, Ty::Bool, span),
+            Ty::Real | Ty::Int | Ty::Text => {
+                let found = self.describe(value.ty);
+                self.report(TypeError::NotACondition { found, span });
+                Value { ty: Ty::Wrong, ..value }
+            }
+        }
+    }
+
+    fn lower_literal(&mut self, value: f64, text: &str, unit: Option<&ast::UnitText>, span: Span) -> Value {
+        let Some(unit) = unit else {
+            let ty = if text.contains(['.', 'e', 'E']) { Ty::Real } else { Ty::Int };
+            return self.number(value, ty, span);
+        };
+        let value = self.unit(unit).si(value);
+        if !value.is_finite() {
+            self.report(TypeError::TooLarge { span });
+        }
+        self.number(value, Ty::Real, span)
+    }
+
+    fn lower_negation(&mut self, scope: &mut Scope<'a>, operand: &'a ast::Expr, span: Span) -> Value {
+        let value = self.lower_number(scope, operand, "-");
+        if let (ast::ExprKind::Number { .. }, ExprKind::Number(number)) =
+            (&operand.kind, &self.model.exprs[value.id].kind)
+        {
+            let negative = -number;
+            return self.number(negative, value.ty, span);
+        }
+        self.apply(Op::Neg, vec![value.id], value.ty, span)
+    }
+
+    fn lower_power(
+        &mut self,
+        scope: &mut Scope<'a>,
+        base: &'a ast::Expr,
+        exponent: &'a ast::Expr,
+        span: Span,
+    ) -> Value {
+        let base = self.lower_number(scope, base, "^");
+        let power = self.lower_number(scope, exponent, "^");
+        if base.ty == Ty::Wrong || power.ty == Ty::Wrong {
+            return self.wrong(span);
+        }
+        if self.facts[power.id.index()].closed {
+            let Some(constant) = self.evaluate_closed(power.id) else { return self.wrong(span) };
+            if f64::from(constant as i32) == constant {
+                let whole = base.ty == Ty::Int && power.ty == Ty::Int && constant >= 0.0;
+                let number = self.number(constant, Ty::Int, exponent.span);
+                let ty = if whole { Ty::Int } else { Ty::Real };
+                return self.apply(Op::Powi, vec![base.id, number.id], ty, span);
+            }
+        }
+        self.apply(Op::Pow, vec![base.id, power.id], Ty::Real, span)
+    }
+
+    fn lower_sum(&mut self, scope: &mut Scope<'a>, chain: &'a ast::Chain<SumOp>) -> Value {
+        let name = |op| match op {
+            SumOp::Add => "+",
+            SumOp::Sub => "-",
+        };
+        let mut sum =
+            self.lower_number(scope, &chain.first, chain.rest.first().map_or("+", |link| name(link.op)));
+        for link in &chain.rest {
+            let operand = self.lower_number(scope, &link.operand, name(link.op));
+            let op = match link.op {
+                SumOp::Add => Op::Add,
+                SumOp::Sub => Op::Sub,
+            };
+            let span = chain.first.span.to(link.operand.span);
+            sum = self.apply(op, vec![sum.id, operand.id], join_numbers(sum.ty, operand.ty), span);
+        }
+        sum
+    }
+
+    fn lower_product(&mut self, scope: &mut Scope<'a>, chain: &'a ast::Chain<ProductOp>) -> Value {
+        let name = |op| match op {
+            ProductOp::Mul => "*",
+            ProductOp::Div => "/",
+        };
+        let mut product =
+            self.lower_number(scope, &chain.first, chain.rest.first().map_or("*", |link| name(link.op)));
+        for link in &chain.rest {
+            let operand = self.lower_number(scope, &link.operand, name(link.op));
+            let joined = join_numbers(product.ty, operand.ty);
+            let (op, ty) = match link.op {
+                ProductOp::Mul => (Op::Mul, joined),
+                ProductOp::Div => (Op::Div, if joined == Ty::Wrong { Ty::Wrong } else { Ty::Real }),
+            };
+            let span = chain.first.span.to(link.operand.span);
+            product = self.apply(op, vec![product.id, operand.id], ty, span);
+        }
+        product
+    }
+
+    fn lower_terms(&mut self, scope: &mut Scope<'a>, op: Op, terms: &'a [ast::Expr]) -> Value {
+        let values = terms.iter().map(|term| self.lower_condition(scope, term)).collect::<Vec<_>>();
+        self.join_terms(op, terms, values)
+    }
+
+    /// Conditions joined by `and` or `or`, from left to right.
+    pub fn join_terms(&mut self, op: Op, terms: &'a [ast::Expr], values: Vec<Value>) -> Value {
+        let first = terms[0].span;
+        let mut all = values[0];
+        for (term, value) in terms.iter().zip(values).skip(1) {
+            let ty = if all.ty == Ty::Wrong { Ty::Wrong } else { value.ty };
+            all = self.apply(op, vec![all.id, value.id], ty, first.to(term.span));
+        }
+        all
+    }
+
+    fn lower_if(
+        &mut self,
+        scope: &mut Scope<'a>,
+        condition: &'a ast::Expr,
+        then: &'a ast::Expr,
+        otherwise: &'a ast::Expr,
+        span: Span,
+    ) -> Value {
+        let condition = self.lower_condition(scope, condition);
+        let yes = self.lower(scope, then);
+        let no = self.lower(scope, otherwise);
+        let ty = match (yes.ty, no.ty) {
+            (Ty::Wrong, _) | (_, Ty::Wrong) => Ty::Wrong,
+            (Ty::Bool, Ty::Bool) => Ty::Bool,
+            (a, b) if a.is_number() && b.is_number() => join_numbers(a, b),
+            (a, b) if a.is_reference() && b.is_reference() => {
+                self.refuse("agents chosen by `if`, except as arguments in `system`,", span);
+                Ty::Wrong
+            }
+            (a, b) => {
+                let (expected, found) = (self.describe(a), self.describe(b));
+                let what = "what follows `else`".to_string();
+                let expected = format!("{expected}, as what follows `then`");
+                self.report(TypeError::Mismatch { what, expected, found, span: otherwise.span, help: None });
+                Ty::Wrong
+            }
+        };
+        let ty = if condition.ty == Ty::Wrong { Ty::Wrong } else { ty };
+        self.apply(Op::Select, vec![condition.id, yes.id, no.id], ty, span)
+    }
+
+    fn lower_comparison(
+        &mut self,
+        scope: &mut Scope<'a>,
+        op: CompareOp,
+        left: &'a ast::Expr,
+        right: &'a ast::Expr,
+        span: Span,
+    ) -> Value {
+        let (a, b) = match op {
+            CompareOp::Equal | CompareOp::NotEqual => {
+                return self.lower_equality(scope, op, left, right, span);
+            }
+            CompareOp::Less | CompareOp::LessEqual | CompareOp::Greater | CompareOp::GreaterEqual => {
+                let name = comparison_name(op);
+                (self.lower_number(scope, left, name), self.lower_number(scope, right, name))
+            }
+        };
+        if a.ty == Ty::Wrong || b.ty == Ty::Wrong {
+            return self.wrong(span);
+        }
+        let (op, operands) = match op {
+            CompareOp::Less => (Op::Lt, vec![a.id, b.id]),
+            CompareOp::Greater => (Op::Lt, vec![b.id, a.id]),
+            CompareOp::LessEqual => (Op::Le, vec![a.id, b.id]),
+            CompareOp::GreaterEqual | CompareOp::Equal | CompareOp::NotEqual => (Op::Le, vec![b.id, a.id]),
+        };
+        self.apply(op, operands, Ty::Bool, span)
+    }
+
+    fn lower_equality(
+        &mut self,
+        scope: &mut Scope<'a>,
+        op: CompareOp,
+        left: &'a ast::Expr,
+        right: &'a ast::Expr,
+        span: Span,
+    ) -> Value {
+        let (a, b) = (self.lower(scope, left), self.lower(scope, right));
+        let same = match (a.ty, b.ty) {
+            (Ty::Wrong, _) | (_, Ty::Wrong) => return self.wrong(span),
+            (Ty::Bool, Ty::Bool) => self.apply(Op::Eq, vec![a.id, b.id], Ty::Bool, span),
+            (x, y) if x.is_number() && y.is_number() => {
+                let varies = [a, b].iter().any(|value| {
+                    let facts = self.facts[value.id.index()];
+                    facts.varies || facts.varies_with_locals
+                });
+                if varies {
+                    let [left, right] = [left, right].map(|side| self.sources.text(side.span).to_string());
+                    self.report(TypeError::EqualReals { span, left, right });
+                    return self.wrong(span);
+                }
+                self.apply(Op::Eq, vec![a.id, b.id], Ty::Bool, span)
+            }
+            (Ty::Nobody, Ty::Nobody) => self.number(1.0, Ty::Bool, span),
+            (Ty::Nobody, y) if y.is_reference() => self.absent(b, span),
+            (x, Ty::Nobody) if x.is_reference() => self.absent(a, span),
+            (x, y) if x.agent_type().is_some() && x.agent_type() == y.agent_type() => {
+                self.push(ExprKind::Same(a.id, b.id), Ty::Bool, span)
+            }
+            (x, y) => {
+                let (expected, found) = (self.describe(x), self.describe(y));
+                let what = format!("the right side of `{}`", comparison_name(op));
+                let expected = format!("{expected}, as the left one");
+                self.report(TypeError::Mismatch { what, expected, found, span: right.span, help: None });
+                return self.wrong(span);
+            }
+        };
+        match op {
+            CompareOp::NotEqual => self.apply(Op::Not, vec![same.id], Ty::Bool, span),
+            _ => same,
+        }
+    }
+
+    fn absent(&mut self, reference: Value, span: Span) -> Value {
+        let present = self.as_condition(reference, span);
+        self.apply(Op::Not, vec![present.id], Ty::Bool, span)
+    }
+}
+
+/// The value of a literal without a unit, possibly negated.
+pub(super) fn bare_literal(expr: &ast::Expr) -> Option<f64> {
+    match &expr.kind {
+        ast::ExprKind::Number { value, unit: None, .. } => Some(*value),
+        ast::ExprKind::Unary(UnaryOp::Neg, operand) => match &operand.kind {
+            ast::ExprKind::Number { value, unit: None, .. } => Some(-*value),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The type of a sum or a product of two numbers.
+pub(super) fn join_numbers(a: Ty, b: Ty) -> Ty {
+    match (a, b) {
+        (Ty::Wrong, _) | (_, Ty::Wrong) => Ty::Wrong,
+        (Ty::Int, Ty::Int) => Ty::Int,
+        _ => Ty::Real,
+    }
+}
+
+fn comparison_name(op: CompareOp) -> &'static str {
+    match op {
+        CompareOp::Less => "<",
+        CompareOp::LessEqual => "<=",
+        CompareOp::Greater => ">",
+        CompareOp::GreaterEqual => ">=",
+        CompareOp::Equal => "==",
+        CompareOp::NotEqual => "!=",
+    }
+}

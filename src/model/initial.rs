@@ -1,0 +1,177 @@
+//! Pass 4: defaults of parameters and initial values of variables, in an order in which each finds what it reads.
+
+use rustc_hash::FxHashSet;
+
+use super::context::{Context, Home, Scope};
+use super::error::{NameError, ValueError};
+use super::ir::{ExprId, ExprKind, TypeId, VarRef};
+use super::operands::for_each_operand;
+use super::order::{find_circle, in_order_of_need};
+use super::types::{Slot, Ty};
+use crate::base::Span;
+use crate::syntax::ast::{self, AgentItem, GivenKind, VariableKind};
+
+/// What an agent type says about its values at t = 0.
+#[derive(Default)]
+pub(super) struct Initials {
+    /// Defaults of the numeric parameters.
+    pub params: Vec<Option<ExprId>>,
+    /// Initial values of the states.
+    pub states: Vec<Option<ExprId>>,
+    /// Initial values of the discrete variables.
+    pub discretes: Vec<Option<ExprId>>,
+    /// States and discretes, each after those that its initial value reads.
+    pub order: Vec<VarRef>,
+}
+
+/// By agent type.
+pub(super) fn initial_values(context: &mut Context) -> Vec<Initials> {
+    (0..context.agents.len()).map(|number| context.initials(TypeId::new(number))).collect()
+}
+
+/// What an expression may read while its agent is made.
+#[derive(Clone, Copy)]
+enum Allowed {
+    /// The parameters before this one.
+    ParamsBefore(usize),
+    /// Parameters and variables.
+    All,
+}
+
+impl<'a> Context<'a> {
+    fn initials(&mut self, ty: TypeId) -> Initials {
+        let item = self.agents[ty.index()].item;
+        let mut initials = Initials::default();
+        let mut numeric = 0;
+        for formal in &item.formals {
+            if matches!(self.globals.get(formal.ty.name.text.as_str()), Some(global) if global.is_agent()) {
+                continue;
+            }
+            let slot = self.agents[ty.index()].params[numeric];
+            let what = format!("the default of `{}`", formal.name.text);
+            let default = formal.default.as_ref();
+            let allowed = Allowed::ParamsBefore(numeric);
+            initials.params.push(default.and_then(|value| self.initial(ty, value, slot, &what, allowed)));
+            numeric += 1;
+        }
+        for part in &item.items {
+            let AgentItem::Variables(line) = part else { continue };
+            for variable in &line.variables {
+                let (slots, found) = match line.kind {
+                    VariableKind::State => (&self.agents[ty.index()].states, &mut initials.states),
+                    VariableKind::Discrete => (&self.agents[ty.index()].discretes, &mut initials.discretes),
+                };
+                let slot = slots[found.len()];
+                let value = self.initial_of(ty, variable, slot);
+                found.push(value);
+            }
+        }
+        self.order_initials(ty, &mut initials);
+        initials
+    }
+
+    fn initial_of(&mut self, ty: TypeId, variable: &'a ast::Variable, slot: Slot) -> Option<ExprId> {
+        let given = variable.initial.as_ref()?;
+        if given.kind == GivenKind::Draw {
+            self.refuse("random draws by `~`", given.value.span);
+            return None;
+        }
+        let what = format!("the initial value of `{}`", variable.name.text);
+        self.initial(ty, &given.value, slot, &what, Allowed::All)
+    }
+
+    fn initial(
+        &mut self,
+        ty: TypeId,
+        expr: &'a ast::Expr,
+        slot: Slot,
+        what: &str,
+        allowed: Allowed,
+    ) -> Option<ExprId> {
+        let value = self.lower_into(&mut Scope::of(Home::Initial(ty)), expr, slot, what);
+        if value.ty == Ty::Wrong {
+            return None;
+        }
+        if let Err((read, span)) = self.reads(value.id, allowed) {
+            self.report(ValueError::NotInitial { what: what.to_string(), read, span });
+            return None;
+        }
+        Some(value.id)
+    }
+
+    /// The states and discretes that an initial value reads, or the first thing that it may not read.
+    fn reads(&self, root: ExprId, allowed: Allowed) -> Result<Vec<VarRef>, (&'static str, Span)> {
+        let mut reads = Vec::new();
+        let mut seen = FxHashSet::default();
+        let mut work = vec![root];
+        while let Some(id) = work.pop() {
+            if !seen.insert(id) {
+                continue;
+            }
+            let expr = &self.model.exprs[id];
+            let own = |agent: &ExprId| matches!(self.model.exprs[*agent].kind, ExprKind::SelfAgent);
+            let refused = match (&expr.kind, allowed) {
+                (ExprKind::Number(_) | ExprKind::Local(_), _) => continue,
+                (ExprKind::Apply(..), _) => {
+                    for_each_operand(&expr.kind, |operand| work.push(operand));
+                    continue;
+                }
+                (ExprKind::Call(function, args), _) => {
+                    let body = self.model.functions[*function].body;
+                    if !self.facts[body.index()].pure {
+                        return Err(("time or other agents", expr.span));
+                    }
+                    work.extend(args);
+                    continue;
+                }
+                (ExprKind::AgentParam(agent, _), Allowed::All) if own(agent) => continue,
+                (ExprKind::AgentParam(agent, number), Allowed::ParamsBefore(limit)) if own(agent) => {
+                    if *number < limit {
+                        continue;
+                    }
+                    "itself or a parameter behind it"
+                }
+                (ExprKind::State(agent, number), Allowed::All) if own(agent) => {
+                    reads.push(VarRef::State(*number));
+                    continue;
+                }
+                (ExprKind::Discrete(agent, number), Allowed::All) if own(agent) => {
+                    reads.push(VarRef::Discrete(*number));
+                    continue;
+                }
+                (ExprKind::State(..) | ExprKind::Discrete(..), _) => "a state or a discrete variable",
+                (ExprKind::Let(..), _) => "a `let` of the agent",
+                (ExprKind::Time, _) => "the time",
+                (ExprKind::Rate(..), _) => "a rate",
+                _ => "links or other agents",
+            };
+            return Err((refused, expr.span));
+        }
+        Ok(reads)
+    }
+
+    fn order_initials(&mut self, ty: TypeId, initials: &mut Initials) {
+        let n_states = initials.states.len();
+        let node = |variable: &VarRef| match variable {
+            VarRef::State(number) => Some(*number),
+            VarRef::Discrete(number) => Some(n_states + number),
+            VarRef::Param(_) | VarRef::Link(_) | VarRef::Let(_) => None,
+        };
+        let values = initials.states.iter().chain(&initials.discretes);
+        let needs = values
+            .map(|value| match value.map(|id| self.reads(id, Allowed::All)) {
+                Some(Ok(reads)) => reads.iter().filter_map(node).collect(),
+                Some(Err(_)) | None => Vec::new(),
+            })
+            .collect::<Vec<Vec<usize>>>();
+        if let Some(circle) = find_circle(&needs) {
+            let model = &self.model.types[ty];
+            let variables = model.states.iter().chain(&model.discretes).collect::<Vec<_>>();
+            let names = circle.iter().map(|&k| (variables[k].name.clone(), variables[k].span)).collect();
+            self.report(NameError::Circle { names, what: "initial values need each other in a circle" });
+        }
+        let variable =
+            |k: usize| if k < n_states { VarRef::State(k) } else { VarRef::Discrete(k - n_states) };
+        initials.order = in_order_of_need(&needs).into_iter().map(variable).collect();
+    }
+}

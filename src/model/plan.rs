@@ -1,0 +1,69 @@
+//! What is known of the agents of a block before they are made.
+
+use super::ir::{ExprId, ModeId, TypeId};
+use crate::base::Span;
+use crate::syntax::ast;
+
+/// Where the value of a variable comes from.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Source {
+    /// An expression of `system`.
+    Argument(ExprId),
+    /// A column of the data, by its place among those that are read.
+    Column(usize),
+    /// An expression of the agent type.
+    Declared(ExprId),
+    /// Reported as missing or wrong.
+    Missing,
+}
+
+/// How the agents of one block are made.
+pub(super) struct Plan<'a> {
+    /// Its number, and its line in `system`.
+    pub item: &'a ast::Instance,
+    /// The type of its agents.
+    pub ty: TypeId,
+    /// The leaf mode in which they start.
+    pub mode: ModeId,
+    /// By number of the parameter.
+    pub params: Vec<Source>,
+    /// By number of the state.
+    pub states: Vec<Source>,
+    /// By number of the discrete variable.
+    pub discretes: Vec<Source>,
+    /// By number of the link; none: it leads nowhere.
+    pub links: Vec<Option<Reference>>,
+    /// The columns that are read, row by row.
+    pub columns: Vec<Vec<f64>>,
+}
+
+/// An agent of `system`, depending on `index`.
+#[derive(Debug)]
+pub(super) enum Reference {
+    /// `none`
+    Nobody(Span),
+    /// `cars[k]` of a block, or a single agent.
+    Agent {
+        /// The number of the block.
+        block: usize,
+        /// The number in the array.
+        index: Option<ExprId>,
+        /// Where it stands.
+        span: Span,
+    },
+    /// `if condition then a else b`
+    If(ExprId, Box<Reference>, Box<Reference>),
+}
+
+impl Reference {
+    /// Where it stands; for a choice, its first alternative.
+    pub fn span(&self) -> Span {
+        let mut reference = self;
+        loop {
+            match reference {
+                Reference::Nobody(span) | Reference::Agent { span, .. } => return *span,
+                Reference::If(_, then, _) => reference = then,
+            }
+        }
+    }
+}

@@ -1,0 +1,370 @@
+//! Pass 5: the agents at t = 0, from `system` and its data files.
+//!
+//! Every block is planned first: where each of its values comes from, how many agents it has. Only then is anything
+//! made, so that a block may refer to one behind it, and a count beyond the limit costs no memory.
+
+use rustc_hash::FxHashMap;
+
+use super::Files;
+use super::context::{Context, Home, Member, Scope};
+use super::error::{FileError, LimitError, SystemError, TypeError, ValueError};
+use super::initial::Initials;
+use super::ir::{Block, ModeId, TypeId};
+use super::limits::AGENTS_MAX;
+use super::plan::{Plan, Source};
+use super::suggest::closest;
+use super::table::{self, Header, Wanted};
+use super::types::{Slot, Ty};
+use crate::base::{FileId, Span};
+use crate::syntax::ast::{self, Count, GivenKind, Item};
+
+/// A data file that has been opened.
+struct Data {
+    file: FileId,
+    header: Header,
+    used: Span,
+}
+
+/// Makes the population.
+pub(super) fn populate<'a>(
+    context: &mut Context<'a>,
+    file: &'a ast::Ast,
+    files: &mut dyn Files,
+    initials: &[Initials],
+) {
+    let mut opened = FxHashMap::default();
+    let instances = file.items.iter().filter_map(|item| match item {
+        Item::System(system) => Some(&system.instances),
+        _ => None,
+    });
+    let mut plans = Vec::new();
+    for item in instances.flatten() {
+        plans.extend(context.plan(item, files, initials, &mut opened));
+    }
+    for plan in &mut plans {
+        context.plan_links(plan);
+    }
+    if !context.has_errors() {
+        context.make(&plans, initials);
+    }
+}
+
+impl<'a> Context<'a> {
+    fn plan(
+        &mut self,
+        item: &'a ast::Instance,
+        files: &mut dyn Files,
+        initials: &[Initials],
+        opened: &mut FxHashMap<String, FileId>,
+    ) -> Option<Plan<'a>> {
+        let constructor = &item.constructor;
+        let ty = self.agent_named(&constructor.agent)?;
+        let mode = self.start_mode(ty, constructor.start.as_ref());
+        let names = &self.agents[ty.index()];
+        let missing = |slots: &[Slot]| vec![Source::Missing; slots.len()];
+        let mut plan = Plan {
+            item,
+            ty,
+            mode,
+            params: missing(&names.params),
+            states: missing(&names.states),
+            discretes: missing(&names.discretes),
+            links: self.model.types[ty].links.iter().map(|_| None).collect(),
+            columns: Vec::new(),
+        };
+        let given = self.plan_arguments(&mut plan);
+        let data = constructor.source.as_ref().map(|source| self.open(source, files, opened));
+        let mut wanted = Vec::new();
+        if let Some(Some(data)) = &data {
+            wanted = self.plan_columns(&mut plan, data, &given);
+        }
+        if !matches!(data, Some(None)) {
+            self.plan_declared(&mut plan, &initials[ty.index()], &given);
+        }
+        let count = self.count(item, &data);
+        let count = match (&data, count) {
+            (Some(Some(data)), Some(count)) => self.read_data(&mut plan, data, &wanted, count),
+            (_, count) => count.unwrap_or(Some(0)),
+        };
+        let count = count.unwrap_or(0);
+        let total = self.model.population.blocks.last().map_or(0, |block| block.first + block.count);
+        self.model.population.blocks.push(Block {
+            name: item.name.text.clone(),
+            ty,
+            first: total,
+            count,
+            array: constructor.count.is_some(),
+            span: item.name.span,
+        });
+        if total + count > AGENTS_MAX {
+            let count = (total + count) as f64;
+            self.report(LimitError::Agents { count, most: AGENTS_MAX, span: item.span });
+        }
+        Some(plan)
+    }
+
+    /// The leaf that is entered by default in the mode that is named, or in the agent.
+    fn start_mode(&mut self, ty: TypeId, start: Option<&'a ast::Target>) -> ModeId {
+        let root = ModeId::new(0);
+        let mut mode = start.and_then(|target| self.resolve_mode(ty, root, target)).unwrap_or(root);
+        while let Some(inner) = self.model.types[ty].modes[mode].initial {
+            mode = inner;
+        }
+        mode
+    }
+
+    /// Arguments that are numbers; returns the place of every argument by name.
+    fn plan_arguments(&mut self, plan: &mut Plan<'a>) -> FxHashMap<&'a str, Span> {
+        let mut given = FxHashMap::default();
+        for arg in &plan.item.constructor.args {
+            let name = arg.name.text.as_str();
+            if let Some(first) = given.insert(name, arg.name.span) {
+                let help = "leave one of them out";
+                self.report(SystemError::GivenTwice {
+                    name: name.to_string(),
+                    span: arg.name.span,
+                    first,
+                    help,
+                });
+            }
+            let member = self.agents[plan.ty.index()].members.get(name).map(|(member, _)| *member);
+            if arg.given.kind == GivenKind::Draw {
+                self.refuse("random draws by `~`", arg.span);
+                continue;
+            }
+            let names = &self.agents[plan.ty.index()];
+            let (slot, source) = match member {
+                Some(Member::Param(number)) => (names.params[number], &mut plan.params[number]),
+                Some(Member::State(number)) => (names.states[number], &mut plan.states[number]),
+                Some(Member::Discrete(number)) => (names.discretes[number], &mut plan.discretes[number]),
+                Some(Member::Link(_)) => continue,
+                Some(Member::Let(_) | Member::Event) | None => {
+                    self.unknown_argument(plan.ty, &arg.name, matches!(member, Some(Member::Let(_))));
+                    continue;
+                }
+            };
+            let what = format!("`{name}`");
+            let value = self.lower_into(&mut Scope::of(Home::Construction), &arg.given.value, slot, &what);
+            if value.ty == Ty::Wrong {
+                continue;
+            }
+            if self.facts[value.id.index()].pure {
+                *source = Source::Argument(value.id);
+            } else {
+                self.report(ValueError::NotConstant { what, span: arg.given.value.span });
+            }
+        }
+        given
+    }
+
+    fn unknown_argument(&mut self, ty: TypeId, name: &ast::Name, is_let: bool) {
+        let similar = closest(&name.text, self.agents[ty.index()].members.keys().copied());
+        let agent = self.model.types[ty].name.clone();
+        let (name, span) = (name.text.clone(), name.span);
+        self.report(SystemError::UnknownArgument { name, agent, span, similar, is_let });
+    }
+
+    /// The file behind `from csv(...)`; none, and a diagnostic, if it cannot be used.
+    fn open(
+        &mut self,
+        source: &'a ast::Expr,
+        files: &mut dyn Files,
+        opened: &mut FxHashMap<String, FileId>,
+    ) -> Option<Data> {
+        let path = match &source.kind {
+            ast::ExprKind::Call { callee, args } => match (&callee.kind, args.as_slice()) {
+                (ast::ExprKind::Name(name), [path]) if name == "csv" => Some(path),
+                _ => None,
+            },
+            _ => None,
+        };
+        let Some(path) = path else {
+            let (what, expected) =
+                ("what follows `from`".to_string(), "a data file, `csv(\"file.csv\")`".to_string());
+            let found = "something else".to_string();
+            self.report(TypeError::Mismatch { what, expected, found, span: source.span, help: None });
+            return None;
+        };
+        let Some(name) = self.text_of(path) else {
+            let errors = self.diagnostics.len();
+            let value = self.lower(&mut Scope::of(Home::File), path);
+            if self.diagnostics.len() == errors && value.ty != Ty::Text {
+                let found = self.describe(value.ty);
+                let (what, expected) = ("the name of a file".to_string(), "a text".to_string());
+                self.report(TypeError::Mismatch { what, expected, found, span: path.span, help: None });
+            }
+            return None;
+        };
+        let file = match opened.get(&name) {
+            Some(&file) => file,
+            None => match files.read(&name) {
+                Ok(text) => {
+                    let file = self.sources.add(name.clone(), text);
+                    opened.insert(name, file);
+                    file
+                }
+                Err(error) => {
+                    self.report(FileError::Unreadable {
+                        path: name,
+                        why: error.to_string(),
+                        span: path.span,
+                    });
+                    return None;
+                }
+            },
+        };
+        match table::read_header(file, &self.sources.file(file).text) {
+            Ok(header) => Some(Data { file, header, used: source.span }),
+            Err(error) => {
+                self.report(error);
+                None
+            }
+        }
+    }
+
+    fn plan_columns(
+        &mut self,
+        plan: &mut Plan<'a>,
+        data: &Data,
+        given: &FxHashMap<&'a str, Span>,
+    ) -> Vec<Wanted> {
+        let mut wanted = Vec::new();
+        for (column, (name, span)) in data.header.columns.iter().enumerate() {
+            let names = &self.agents[plan.ty.index()];
+            let (slot, source) = match names.members.get(name.as_str()).map(|(member, _)| *member) {
+                Some(Member::Param(number)) => (names.params[number], &mut plan.params[number]),
+                Some(Member::State(number)) => (names.states[number], &mut plan.states[number]),
+                Some(Member::Discrete(number)) => (names.discretes[number], &mut plan.discretes[number]),
+                Some(Member::Link(_) | Member::Let(_) | Member::Event) | None => {
+                    if !(name.starts_with('_') || name == "i" || name == "index") {
+                        self.unknown_column(plan.ty, name, *span, data.used);
+                    }
+                    continue;
+                }
+            };
+            if let Some(&first) = given.get(name.as_str()) {
+                let help = "leave one of them out; a column whose name begins with `_` is passed over";
+                self.report(SystemError::GivenTwice { name: name.clone(), span: *span, first, help });
+            }
+            *source = Source::Column(wanted.len());
+            wanted.push(Wanted { column, slot });
+        }
+        wanted
+    }
+
+    fn unknown_column(&mut self, ty: TypeId, name: &str, span: Span, used: Span) {
+        let model = &self.model.types[ty];
+        let variables = model.params.iter().chain(&model.states).chain(&model.discretes);
+        let similar = closest(name, variables.map(|variable| variable.name.as_str()));
+        let agent = model.name.clone();
+        self.report(FileError::UnknownColumn { name: name.to_string(), agent, span, similar, used });
+    }
+
+    /// What neither an argument nor a column gives comes from the agent type, or is missing.
+    fn plan_declared(&mut self, plan: &mut Plan<'a>, initials: &Initials, given: &FxHashMap<&'a str, Span>) {
+        let model = &self.model.types[plan.ty];
+        let parts = [
+            ("parameter", &model.params, &mut plan.params, &initials.params),
+            ("state", &model.states, &mut plan.states, &initials.states),
+            ("discrete variable", &model.discretes, &mut plan.discretes, &initials.discretes),
+        ];
+        let mut missing: Vec<(&'static str, String, Span)> = Vec::new();
+        for (kind, variables, sources, declared) in parts {
+            for ((variable, source), declared) in variables.iter().zip(sources).zip(declared) {
+                match (*source, declared) {
+                    (Source::Missing, Some(value)) => *source = Source::Declared(*value),
+                    (Source::Missing, None) if !given.contains_key(variable.name.as_str()) => {
+                        missing.push((kind, variable.name.clone(), variable.span));
+                    }
+                    (Source::Missing | Source::Argument(_) | Source::Column(_) | Source::Declared(_), _) => {}
+                }
+            }
+        }
+        let unlinked =
+            model.links.iter().filter(|link| link.required && !given.contains_key(link.name.as_str()));
+        missing.extend(unlinked.map(|link| ("parameter", link.name.clone(), link.span)));
+        for (kind, name, declared) in missing {
+            let with_text = self.declared_with_value(plan.ty, &name);
+            if !with_text {
+                let agent = self.model.types[plan.ty].name.clone();
+                self.report(SystemError::Missing {
+                    kind,
+                    name,
+                    agent,
+                    span: plan.item.constructor.span,
+                    declared,
+                });
+            }
+        }
+    }
+
+    /// Whether a variable has a value in the text, though it was refused.
+    fn declared_with_value(&self, ty: TypeId, name: &str) -> bool {
+        let item = self.agents[ty.index()].item;
+        let formal = item.formals.iter().any(|formal| formal.name.text == name && formal.default.is_some());
+        formal
+            || item.items.iter().any(|part| match part {
+                ast::AgentItem::Variables(line) => line
+                    .variables
+                    .iter()
+                    .any(|variable| variable.name.text == name && variable.initial.is_some()),
+                _ => false,
+            })
+    }
+
+    /// How many agents: none if that is wrong, `Some(None)` for one per row.
+    fn count(&mut self, item: &'a ast::Instance, data: &Option<Option<Data>>) -> Option<Option<usize>> {
+        match &item.constructor.count {
+            None => Some(Some(1)),
+            Some(Count::AllRows(span)) => {
+                if data.is_none() {
+                    self.report(SystemError::NoRows {
+                        agent: item.constructor.agent.text.clone(),
+                        span: *span,
+                    });
+                }
+                data.as_ref().and_then(|data| data.as_ref()).map(|_| None)
+            }
+            Some(Count::Exactly(expr)) => {
+                let what = "the size of an array";
+                let value = self.lower_number(&mut Scope::of(Home::File), expr, "[ ]");
+                let count = self.constant(value, expr, what)?;
+                if count.fract() != 0.0 || count < 0.0 {
+                    self.report(ValueError::BadCount { value: count, span: expr.span });
+                    return None;
+                }
+                if count > AGENTS_MAX as f64 {
+                    self.report(LimitError::Agents { count, most: AGENTS_MAX, span: expr.span });
+                    return None;
+                }
+                Some(Some(count as usize))
+            }
+        }
+    }
+
+    /// Reads the rows; returns how many agents there are.
+    fn read_data(
+        &mut self,
+        plan: &mut Plan<'a>,
+        data: &Data,
+        wanted: &[Wanted],
+        count: Option<usize>,
+    ) -> Option<usize> {
+        let text = &self.sources.file(data.file).text;
+        match table::read_rows(data.file, text, &data.header, wanted, count.unwrap_or(AGENTS_MAX + 1)) {
+            Ok(rows) => {
+                plan.columns = rows.values;
+                if let Some(needed) = count.filter(|&needed| rows.count < needed) {
+                    let (found, span) = (rows.count, rows.last);
+                    let used = plan.item.constructor.span;
+                    self.report(FileError::TooFewRows { needed, found, span, used });
+                }
+                Some(rows.count)
+            }
+            Err(error) => {
+                self.report(error);
+                count
+            }
+        }
+    }
+}

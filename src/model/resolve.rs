@@ -1,0 +1,333 @@
+//! Names: what a name, a member behind a dot, a rate and a mode stand for in their scope.
+
+use std::f64::consts::PI;
+
+use super::context::{Context, Global, GlobalKind, Home, Meaning, Member, Scope, Value};
+use super::error::{NameError, TypeError};
+use super::ir::{ExprKind, ModeId, TypeId};
+use super::suggest::closest;
+use super::types::Ty;
+use crate::base::Span;
+use crate::syntax::ast;
+
+/// Constants and places of the language that are written as names.
+const CONSTANTS: &[&str] = &["pi", "inf", "true", "false", "none", "time", "self", "index"];
+
+impl<'a> Context<'a> {
+    /// The value of a name.
+    pub fn lower_name(&mut self, scope: &mut Scope<'a>, name: &'a str, span: Span) -> Value {
+        if CONSTANTS.contains(&name) {
+            return self.lower_constant(scope, name, span);
+        }
+        if let Some(&(_, binder)) = scope.bound.iter().rev().find(|(bound, _)| *bound == name) {
+            let ty = self.model.binders[binder].ty;
+            return self.push(ExprKind::Bound(binder), Ty::Agent(ty), span);
+        }
+        if let Some(number) = scope.locals.iter().position(|(local, _)| *local == name) {
+            return self.push(ExprKind::Local(number), scope.locals[number].1, span);
+        }
+        match scope.home {
+            Home::Agent(ty, mode) => {
+                if let Some(member) = self.visible_member(ty, mode, name) {
+                    let agent = self.push(ExprKind::SelfAgent, Ty::Agent(ty), span);
+                    return self.lower_member(agent, ty, member, name, span);
+                }
+            }
+            Home::Initial(ty) => {
+                if let Some(&(member, _)) = self.agents[ty.index()].members.get(name) {
+                    let agent = self.push(ExprKind::SelfAgent, Ty::Agent(ty), span);
+                    return self.lower_member(agent, ty, member, name, span);
+                }
+            }
+            Home::Pair(number) => {
+                if let Some(value) = self.lower_in_pair(number, name, span) {
+                    return value;
+                }
+            }
+            Home::File | Home::Function | Home::Construction => {}
+        }
+        match self.globals.get(name) {
+            Some(&Global { kind: GlobalKind::Definition(number), .. }) => {
+                self.lower_definition(number, name, span)
+            }
+            Some(global) => self.not_a_value(global.kind, name, span),
+            None => self.unknown_name(scope, name, span),
+        }
+    }
+
+    fn lower_constant(&mut self, scope: &Scope<'a>, name: &str, span: Span) -> Value {
+        match (name, scope.home) {
+            ("pi", _) => self.number(PI, Ty::Real, span),
+            ("inf", _) => self.number(f64::INFINITY, Ty::Real, span),
+            ("true", _) => self.number(1.0, Ty::Bool, span),
+            ("false", _) => self.number(0.0, Ty::Bool, span),
+            ("none", _) => self.push(ExprKind::NoAgent, Ty::Nobody, span),
+            ("time", _) => self.push(ExprKind::Time, Ty::Real, span),
+            ("self", Home::Agent(ty, _) | Home::Initial(ty)) => {
+                self.push(ExprKind::SelfAgent, Ty::Agent(ty), span)
+            }
+            ("index", Home::Initial(_) | Home::Construction) => self.push(ExprKind::Local(0), Ty::Int, span),
+            ("self", Home::Pair(_)) => {
+                let help = "name one of the participants";
+                self.not_here(name, span, "has no meaning in an interaction, which has two agents", help)
+            }
+            ("self", _) => {
+                let help = "give the function a parameter of the agent's type";
+                self.not_here(name, span, "is the agent whose text this is, and this is not an agent's", help)
+            }
+            _ => {
+                let help = "keep it in a parameter: `agent Car(k: int)` and `cars = Car[N](k = index)`";
+                self.not_here(name, span, "is known only while an agent is made", help)
+            }
+        }
+    }
+
+    fn not_here(&mut self, name: &str, span: Span, why: &'static str, help: &'static str) -> Value {
+        self.report(NameError::NotHere { name: name.to_string(), span, why, help });
+        self.wrong(span)
+    }
+
+    /// A member of an agent type or a `let` of a mode around this place.
+    fn visible_member(&self, ty: TypeId, mode: ModeId, name: &str) -> Option<Member> {
+        let names = &self.agents[ty.index()];
+        let mut around = Some(mode);
+        while let Some(id) = around {
+            if let Some(&number) = names.mode_lets[id.index()].get(name) {
+                return Some(Member::Let(number));
+            }
+            around = self.model.types[ty].modes[id].parent;
+        }
+        names.members.get(name).map(|(member, _)| *member)
+    }
+
+    fn lower_in_pair(&mut self, number: usize, name: &str, span: Span) -> Option<Value> {
+        if let Some(participants) = self.pairs[number].participants {
+            if let Some(which) = participants.iter().position(|(participant, _)| *participant == name) {
+                return Some(self.push(ExprKind::Participant(which), Ty::Agent(participants[which].1), span));
+            }
+        } else if self.pairs[number].item.formals.iter().any(|formal| formal.name.text == name) {
+            return Some(self.wrong(span));
+        }
+        let &definition = self.pairs[number].lets.get(name)?;
+        Some(self.lower_definition(definition, name, span))
+    }
+
+    /// The value that a definition gives to the place where its name stands.
+    fn lower_definition(&mut self, number: usize, name: &str, span: Span) -> Value {
+        match self.define(number) {
+            Meaning::Number(value, ty) => self.number(value, ty, span),
+            Meaning::Text(_) => self.number(0.0, Ty::Text, span),
+            Meaning::Shared(value) => value,
+            Meaning::Function(_) => {
+                let help = "call it: write its arguments in parentheses";
+                self.report(NameError::NotAValue { name: name.to_string(), what: "a function", span, help });
+                self.wrong(span)
+            }
+            Meaning::Let(..) | Meaning::Failed => self.wrong(span),
+        }
+    }
+
+    fn not_a_value(&mut self, kind: GlobalKind, name: &str, span: Span) -> Value {
+        let (what, help) = match kind {
+            GlobalKind::Agent(_) => ("an agent type", "bind one of its agents: `exists o in other Car: ...`"),
+            GlobalKind::Interaction => {
+                ("an interaction", "interactions happen by themselves; nothing refers to them")
+            }
+            GlobalKind::Instance | GlobalKind::Definition(_) => {
+                ("a name of `system`", "hand the agent over as an argument of agent type, or by a `link`")
+            }
+        };
+        self.report(NameError::NotAValue { name: name.to_string(), what, span, help });
+        self.wrong(span)
+    }
+
+    fn unknown_name(&mut self, scope: &Scope<'a>, name: &str, span: Span) -> Value {
+        if !self.imports {
+            let mut known = CONSTANTS.to_vec();
+            known.extend(scope.bound.iter().map(|(bound, _)| *bound));
+            known.extend(scope.locals.iter().map(|(local, _)| *local));
+            known.extend(self.globals.keys());
+            if let Home::Agent(ty, mode) = scope.home {
+                known.extend(self.agents[ty.index()].mode_lets[mode.index()].keys());
+            }
+            if let Home::Agent(ty, _) | Home::Initial(ty) = scope.home {
+                known.extend(self.agents[ty.index()].members.keys());
+            }
+            if let Home::Pair(number) = scope.home {
+                known.extend(self.pairs[number].lets.keys());
+                known.extend(self.pairs[number].item.formals.iter().map(|formal| formal.name.text.as_str()));
+            }
+            let similar = closest(name, known);
+            self.report(NameError::Unknown { what: "variable", name: name.to_string(), span, similar });
+        }
+        self.wrong(span)
+    }
+
+    /// What stands behind a dot.
+    pub fn lower_field(
+        &mut self,
+        scope: &mut Scope<'a>,
+        base: &'a ast::Expr,
+        name: &'a ast::Name,
+        span: Span,
+    ) -> Value {
+        let agent = self.lower(scope, base);
+        let Some(ty) = agent.ty.agent_type() else {
+            if agent.ty != Ty::Wrong {
+                let found = self.describe(agent.ty);
+                self.report(TypeError::NotAnAgent { found, span: base.span });
+            }
+            return self.wrong(span);
+        };
+        match self.agents[ty.index()].members.get(name.text.as_str()) {
+            Some(&(member, _)) => self.lower_member(agent, ty, member, &name.text, span),
+            None => {
+                self.no_member(ty, name);
+                self.wrong(span)
+            }
+        }
+    }
+
+    /// Reports that an agent type has no such member.
+    pub fn no_member(&mut self, ty: TypeId, name: &ast::Name) {
+        let names = &self.agents[ty.index()];
+        let mode = names.mode_lets.iter().position(|lets| lets.contains_key(name.text.as_str()));
+        let mode = mode.map(|number| self.model.types[ty].modes[ModeId::new(number)].path.clone());
+        let similar = closest(&name.text, names.members.keys().copied());
+        let agent = self.model.types[ty].name.clone();
+        self.report(NameError::NoMember { name: name.text.clone(), agent, span: name.span, similar, mode });
+    }
+
+    fn lower_member(&mut self, agent: Value, ty: TypeId, member: Member, name: &str, span: Span) -> Value {
+        let names = &self.agents[ty.index()];
+        let (kind, ty) = match member {
+            Member::Param(number) => (ExprKind::AgentParam(agent.id, number), names.params[number].ty),
+            Member::State(number) => (ExprKind::State(agent.id, number), names.states[number].ty),
+            Member::Discrete(number) => (ExprKind::Discrete(agent.id, number), names.discretes[number].ty),
+            Member::Link(number) => {
+                let link = &self.model.types[ty].links[number];
+                let ty = if link.required { Ty::Agent(link.ty) } else { Ty::Link(link.ty) };
+                (ExprKind::Link(agent.id, number), ty)
+            }
+            Member::Let(definition) => match self.define(definition) {
+                Meaning::Let(number, ty) => (ExprKind::Let(agent.id, number), ty),
+                _ => return self.wrong(span),
+            },
+            Member::Event => {
+                let help = "events are sent by `emit` and received by `on`";
+                self.report(NameError::NotAValue { name: name.to_string(), what: "an event", span, help });
+                return self.wrong(span);
+            }
+        };
+        self.push(kind, ty, span)
+    }
+
+    /// `x'`: the rate of a state.
+    pub fn lower_prime(&mut self, scope: &mut Scope<'a>, state: &'a ast::Expr, span: Span) -> Value {
+        let value = self.lower(scope, state);
+        if value.ty == Ty::Wrong {
+            return value;
+        }
+        if let ExprKind::State(agent, number) = self.model.exprs[value.id].kind {
+            return self.push(ExprKind::Rate(agent, number), Ty::Real, span);
+        }
+        let found = self.describe(value.ty);
+        self.report(TypeError::Operand {
+            operator: "'".to_string(),
+            needs: "a state",
+            found,
+            span: state.span,
+        });
+        self.wrong(span)
+    }
+
+    /// `cars[3]` in an expression.
+    pub fn lower_index(&mut self, scope: &mut Scope<'a>, base: &'a ast::Expr, span: Span) -> Value {
+        let value = self.lower(scope, base);
+        if value.ty != Ty::Wrong {
+            let found = self.describe(value.ty);
+            let needs = "an array of `system`, and only there";
+            self.report(TypeError::Operand { operator: "[ ]".to_string(), needs, found, span: base.span });
+        }
+        self.wrong(span)
+    }
+
+    /// `o is Brake`.
+    pub fn lower_is(
+        &mut self,
+        scope: &mut Scope<'a>,
+        agent: &'a ast::Expr,
+        target: &'a ast::Target,
+        span: Span,
+    ) -> Value {
+        let value = self.lower(scope, agent);
+        let Some(ty) = value.ty.agent_type() else {
+            if value.ty != Ty::Wrong {
+                let found = self.describe(value.ty);
+                let needs = "an agent on its left";
+                self.report(TypeError::Operand {
+                    operator: "is".to_string(),
+                    needs,
+                    found,
+                    span: agent.span,
+                });
+            }
+            return self.wrong(span);
+        };
+        let from = match (scope.home, &self.model.exprs[value.id].kind) {
+            (Home::Agent(_, mode), ExprKind::SelfAgent) => mode,
+            _ => ModeId::new(0),
+        };
+        match self.resolve_mode(ty, from, target) {
+            Some(mode) => self.push(ExprKind::Is(value.id, mode), Ty::Bool, span),
+            None => self.wrong(span),
+        }
+    }
+
+    /// The mode that a path names when it is written in mode `from`: the first name is looked up there, then in the
+    /// modes around it. None, and a diagnostic, if there is none.
+    pub fn resolve_mode(&mut self, ty: TypeId, from: ModeId, target: &ast::Target) -> Option<ModeId> {
+        if let Some(span) = target.history {
+            self.refuse("`history` targets", span);
+            return None;
+        }
+        let modes = &self.model.types[ty].modes;
+        let child = |of: ModeId, name: &str| {
+            modes[of].children.iter().copied().find(|&child| modes[child].name == name)
+        };
+        let mut around = Some(from);
+        let mut found = None;
+        while let (Some(id), None) = (around, found) {
+            found = child(id, &target.path[0].text);
+            around = modes[id].parent;
+        }
+        let mut inside = ModeId::new(0);
+        for (k, name) in target.path.iter().enumerate() {
+            let next = if k == 0 { found } else { child(inside, &name.text) };
+            let Some(next) = next else {
+                if !self.agents[ty.index()].incomplete {
+                    self.unknown_mode(ty, inside, name);
+                }
+                return None;
+            };
+            inside = next;
+        }
+        Some(inside)
+    }
+
+    fn unknown_mode(&mut self, ty: TypeId, inside: ModeId, name: &ast::Name) {
+        let modes = &self.model.types[ty].modes;
+        let similar = closest(&name.text, modes.iter().skip(1).map(|mode| mode.name.as_str()));
+        let owner = if inside.index() == 0 {
+            format!("agent `{}`", modes[inside].name)
+        } else {
+            format!("mode `{}`", modes[inside].path)
+        };
+        self.report(NameError::UnknownMode {
+            name: name.text.clone(),
+            inside: owner,
+            span: name.span,
+            similar,
+        });
+    }
+}

@@ -1,0 +1,205 @@
+//! Pass 7: `run { }`, with the command line laid over it.
+
+use rustc_hash::FxHashMap;
+
+use super::Settings;
+use super::context::{Context, Home, Scope};
+use super::error::{FileError, RunError};
+use super::ir::Record;
+use super::suggest::closest;
+use super::types::{Slot, Ty};
+use crate::base::Span;
+use crate::syntax::ast::{self, Item, RunSettingKind};
+
+/// Settings of the language whose meaning comes later.
+const LATER: &[&str] = &[
+    "algorithm",
+    "engine",
+    "integrator",
+    "backend",
+    "threads",
+    "event_tolerance",
+    "max_microsteps",
+    "zeno_events",
+    "gamma",
+    "h_min",
+    "h_max",
+    "step_max",
+    "step_min",
+];
+
+/// A setting that is one number: its name, what it must be, the test.
+struct Number {
+    name: &'static str,
+    needs: &'static str,
+    allowed: fn(f64) -> bool,
+}
+
+const UNTIL: Number =
+    Number { name: "until", needs: "a time from 0 on", allowed: |value| value >= 0.0 && value.is_finite() };
+const TOLERANCE: Number = Number {
+    name: "tolerance",
+    needs: "a number above 0",
+    allowed: |value| value > 0.0 && value.is_finite(),
+};
+const ABSOLUTE: Number =
+    Number { name: "absolute", needs: "a number above 0", allowed: |value| value > 0.0 && value.is_finite() };
+const EVERY: Number =
+    Number { name: "every", needs: "a time above 0", allowed: |value| value > 0.0 && value.is_finite() };
+const SEED: Number = Number {
+    name: "seed",
+    needs: "a whole number from 0 to 2^53",
+    allowed: |value| value.fract() == 0.0 && (0.0..=9_007_199_254_740_992.0).contains(&value),
+};
+
+/// Fills in the settings.
+pub(super) fn settle<'a>(context: &mut Context<'a>, file: &'a ast::Ast, settings: &Settings) {
+    let runs = file.items.iter().filter_map(|item| match item {
+        Item::Run(run) => Some(run),
+        _ => None,
+    });
+    for run in runs.take(1) {
+        context.model.run.span = Some(run.span);
+        let mut set = FxHashMap::default();
+        for setting in &run.settings {
+            context.setting(setting, &mut set);
+        }
+    }
+    context.lay_over(settings);
+}
+
+impl<'a> Context<'a> {
+    fn setting(&mut self, item: &'a ast::RunSetting, set: &mut FxHashMap<String, Span>) {
+        match &item.kind {
+            RunSettingKind::Until(value) => {
+                self.only_once("until", item.span, set);
+                if let Some(value) = self.run_number(&UNTIL, value) {
+                    self.model.run.until = Some(value);
+                }
+            }
+            RunSettingKind::StopWhen(_) => self.refuse("`stop when` settings", item.span),
+            RunSettingKind::Record { columns, period, file } => {
+                self.record(columns, period.as_ref(), file, item.span)
+            }
+            RunSettingKind::Output { name, file } if name.text == "events" => {
+                self.only_once("events", item.span, set);
+                self.file_name(file);
+                self.model.run.events = Some(file.value.clone());
+            }
+            RunSettingKind::Output { name, .. } => self.unknown_setting(name),
+            RunSettingKind::Set { name, value } => {
+                self.only_once(&name.text, item.span, set);
+                self.set_number(name, value);
+            }
+        }
+    }
+
+    fn only_once(&mut self, name: &str, span: Span, set: &mut FxHashMap<String, Span>) {
+        if let Some(first) = set.insert(name.to_string(), span) {
+            self.report(RunError::Twice { name: name.to_string(), span, first });
+        }
+    }
+
+    fn file_name(&mut self, file: &ast::Text) {
+        if file.value.trim().is_empty() {
+            let why = "the name is empty".to_string();
+            self.report(FileError::Unreadable { path: file.value.clone(), why, span: file.span });
+        }
+    }
+
+    fn set_number(&mut self, name: &'a ast::Name, value: &'a ast::Expr) {
+        let setting = match name.text.as_str() {
+            "tolerance" => &TOLERANCE,
+            "absolute" => &ABSOLUTE,
+            "seed" => &SEED,
+            later if LATER.contains(&later) => return self.refuse(format!("`{later}` settings"), name.span),
+            _ => return self.unknown_setting(name),
+        };
+        let Some(value) = self.run_number(setting, value) else { return };
+        let run = &mut self.model.run;
+        match name.text.as_str() {
+            "tolerance" => run.tolerance = value,
+            "absolute" => run.absolute = Some(value),
+            _ => run.seed = value as u64,
+        }
+    }
+
+    fn unknown_setting(&mut self, name: &ast::Name) {
+        let known = ["until", "tolerance", "absolute", "seed", "record", "events"];
+        let similar = closest(&name.text, known.into_iter().chain(LATER.iter().copied()));
+        self.report(RunError::Unknown { name: name.text.clone(), span: name.span, similar });
+    }
+
+    fn run_number(&mut self, setting: &Number, expr: &'a ast::Expr) -> Option<f64> {
+        let what = format!("`{}`", setting.name);
+        let value = self.lower_into(&mut Scope::of(Home::File), expr, Slot::plain(Ty::Real), &what);
+        let value = self.constant(value, expr, &what)?;
+        self.in_range(setting, value, expr.span)
+    }
+
+    fn in_range(&mut self, setting: &Number, value: f64, span: Span) -> Option<f64> {
+        if (setting.allowed)(value) {
+            return Some(value);
+        }
+        self.report(RunError::OutOfRange {
+            name: setting.name.to_string(),
+            needs: setting.needs,
+            value,
+            span,
+        });
+        None
+    }
+
+    fn lay_over(&mut self, settings: &Settings) {
+        if let Some(value) = self.given(&UNTIL, settings.until) {
+            self.model.run.until = Some(value);
+        }
+        if let Some(value) = self.given(&TOLERANCE, settings.tolerance) {
+            self.model.run.tolerance = value;
+        }
+        if let Some(value) = self.given(&ABSOLUTE, settings.absolute) {
+            self.model.run.absolute = Some(value);
+        }
+        if let Some(seed) = settings.seed {
+            self.model.run.seed = seed;
+        }
+        if settings.record_all && self.model.run.records.is_empty() {
+            let record = self.record_of_everything();
+            self.model.run.records.push(record);
+        }
+    }
+
+    fn given(&mut self, setting: &Number, value: Option<f64>) -> Option<f64> {
+        let value = value?;
+        if (setting.allowed)(value) {
+            return Some(value);
+        }
+        let span = self.command_line(&format!("--{} ", setting.name), &value.to_string());
+        self.in_range(setting, value, span)
+    }
+
+    fn record(
+        &mut self,
+        items: &'a [ast::Expr],
+        period: Option<&'a ast::Expr>,
+        file: &'a ast::Text,
+        span: Span,
+    ) {
+        let mut choice = self.nothing_chosen();
+        for item in items {
+            self.choose(item, &mut choice);
+        }
+        let every = period.and_then(|period| self.run_number(&EVERY, period));
+        self.file_name(file);
+        let record = self.chosen(choice, every, Some(file.value.clone()), span);
+        self.model.run.records.push(record);
+    }
+
+    fn record_of_everything(&self) -> Record {
+        let mut choice = self.nothing_chosen();
+        for ty in self.model.types.indices() {
+            self.choose_type(ty, &mut choice);
+        }
+        self.chosen(choice, None, None, Span::default())
+    }
+}

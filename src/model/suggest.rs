@@ -1,0 +1,32 @@
+//! "Did you mean": the known name that is closest to a mistyped one.
+
+/// The closest of the candidates, if it is close enough to be what was meant; ties go to the first in the alphabet.
+pub(super) fn closest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<String> {
+    let allowed = (name.chars().count() / 3).max(1);
+    candidates
+        .into_iter()
+        .filter(|candidate| *candidate != name)
+        .map(|candidate| (distance(name, candidate), candidate))
+        .filter(|(distance, candidate)| *distance <= allowed && *distance < candidate.chars().count().max(1))
+        .min()
+        .map(|(_, candidate)| candidate.to_string())
+}
+
+/// Edits between two names; letters that differ in case only count as equal.
+fn distance(name: &str, candidate: &str) -> usize {
+    strsim::osa_distance(name, candidate)
+        .min(strsim::osa_distance(&name.to_lowercase(), &candidate.to_lowercase()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::closest;
+
+    #[test]
+    fn only_near_names_are_suggested() {
+        assert_eq!(closest("raod", ["road", "len", "lanes"]), Some("road".to_string()));
+        assert_eq!(closest("car", ["Car", "cars"]), Some("Car".to_string()));
+        assert_eq!(closest("z", ["x", "y"]), None);
+        assert_eq!(closest("velocity", ["v", "x"]), None);
+    }
+}

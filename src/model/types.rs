@@ -1,0 +1,99 @@
+//! Types while a model is being checked: those of the product, and the few that never leave this floor.
+
+use super::ir::{AgentType, Type, TypeId};
+use super::units::Unit;
+use crate::base::Arena;
+
+/// The type of an expression that is being checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ty {
+    /// A real number.
+    Real,
+    /// A whole number.
+    Int,
+    /// True or false.
+    Bool,
+    /// A text; only parameters and file names are.
+    Text,
+    /// An agent that is there.
+    Agent(TypeId),
+    /// An agent, or none.
+    Link(TypeId),
+    /// `none`, before it is known of which type.
+    Nobody,
+    /// Something that has been reported already; it goes with everything.
+    Wrong,
+}
+
+impl Ty {
+    /// Whether arithmetic may use it.
+    pub fn is_number(self) -> bool {
+        matches!(self, Ty::Real | Ty::Int)
+    }
+
+    /// Whether it refers to an agent, or may.
+    pub fn is_reference(self) -> bool {
+        matches!(self, Ty::Agent(_) | Ty::Link(_) | Ty::Nobody)
+    }
+
+    /// The agent type that it refers to.
+    pub fn agent_type(self) -> Option<TypeId> {
+        match self {
+            Ty::Agent(ty) | Ty::Link(ty) => Some(ty),
+            Ty::Real | Ty::Int | Ty::Bool | Ty::Text | Ty::Nobody | Ty::Wrong => None,
+        }
+    }
+
+    /// The type in the product; those that never leave this floor become numbers, and a model with them is refused.
+    pub fn ir(self) -> Type {
+        match self {
+            Ty::Int => Type::Int,
+            Ty::Bool => Type::Bool,
+            Ty::Agent(ty) => Type::Agent(ty),
+            Ty::Link(ty) => Type::Link(ty),
+            Ty::Real | Ty::Text | Ty::Nobody | Ty::Wrong => Type::Real,
+        }
+    }
+
+    /// In words, with its article.
+    pub fn describe(self, types: &Arena<AgentType>) -> String {
+        match self {
+            Ty::Real => "a real number".to_string(),
+            Ty::Int => "a whole number".to_string(),
+            Ty::Bool => "a condition".to_string(),
+            Ty::Text => "a text".to_string(),
+            Ty::Agent(ty) => format!("an agent `{}`", types[ty].name),
+            Ty::Link(ty) => format!("a link to `{}`, which may be none", types[ty].name),
+            Ty::Nobody => "`none`".to_string(),
+            Ty::Wrong => "something that is wrong already".to_string(),
+        }
+    }
+}
+
+impl From<Type> for Ty {
+    fn from(ty: Type) -> Ty {
+        match ty {
+            Type::Real => Ty::Real,
+            Type::Int => Ty::Int,
+            Type::Bool => Ty::Bool,
+            Type::Agent(ty) => Ty::Agent(ty),
+            Type::Link(ty) => Ty::Link(ty),
+        }
+    }
+}
+
+/// What a value goes into: a declared type, and the unit that a bare literal is in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Slot {
+    /// The declared type.
+    pub ty: Ty,
+    /// The declared unit.
+    pub unit: Unit,
+}
+
+impl Slot {
+    /// A type without a unit.
+    pub fn plain(ty: Ty) -> Slot {
+        Slot { ty, unit: Unit::ONE }
+    }
+}
