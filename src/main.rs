@@ -1,2 +1,7 @@
-//! hyc
-fn main() {}
+//! The program `hyc`: hands the words of the command line to the topmost floor.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    hyc::cli::main(std::env::args_os()).into()
+}

@@ -5,3 +5,6 @@ mod model;
 mod codegen_systems;
 mod codegen_bits;
 mod codegen_program;
+mod cli;
+mod licences;
+mod tidy;

@@ -1,0 +1,271 @@
+//! What the user may type, as data. The texts here are the help.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// A language, a compiler and a simulator for multi-agent hybrid systems
+#[derive(Debug, Parser)]
+#[command(name = "hyc", version, max_term_width = 100, propagate_version = true)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Compile a model and simulate it
+    Run(RunArguments),
+    /// Say what is wrong with models
+    Check(CheckArguments),
+    /// Print a model at a stage of its way to the simulator
+    Show(ShowArguments),
+    /// Explain a code such as HY0203; without a code, list all
+    Explain(ExplainArguments),
+    /// Lay a model out in the canonical form (not built yet)
+    Fmt(FmtArguments),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RunArguments {
+    /// The model
+    #[arg(value_name = "MODEL.hy")]
+    pub(super) model: PathBuf,
+    #[command(flatten)]
+    pub(super) settings: SettingArguments,
+    #[command(flatten)]
+    pub(super) engine: EngineArguments,
+    #[command(flatten)]
+    pub(super) outputs: OutputArguments,
+    /// What a false `assert` does to the exit code: 4, or 0
+    #[arg(long = "assert", value_enum, default_value_t, value_name = "LEVEL")]
+    pub(super) asserts: AssertLevel,
+    /// Print neither progress nor summary
+    #[arg(short, long)]
+    pub(super) quiet: bool,
+}
+
+/// What overrides params and `run { }`.
+#[derive(Clone, Debug, Default, Args)]
+pub(super) struct SettingArguments {
+    /// Give a param another value, in its declared unit (repeatable)
+    #[arg(short, long = "param", value_name = "NAME=VALUE", value_parser = pair)]
+    pub(super) params: Vec<(String, String)>,
+    /// Run until this time, in seconds
+    #[arg(long, value_name = "T", value_parser = finite_not_negative)]
+    pub(super) until: Option<f64>,
+    /// Relative tolerance of a step
+    #[arg(long, value_name = "E", value_parser = finite_positive)]
+    pub(super) tolerance: Option<f64>,
+    /// Absolute tolerance of a step; as the relative one unless given
+    #[arg(long, value_name = "E", value_parser = finite_positive)]
+    pub(super) absolute: Option<f64>,
+    /// Seed of all random draws
+    #[arg(long, value_name = "S")]
+    pub(super) seed: Option<u64>,
+}
+
+/// How it is simulated.
+#[derive(Debug, Args)]
+pub(super) struct EngineArguments {
+    /// How the agents' clocks advance
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) algorithm: Algorithm,
+    /// The form of the engine: `plain` (the default, until `fast` is built)
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) engine: Engine,
+    /// The method of integration
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) integrator: Integrator,
+    /// What evaluates the equations: machine code, or the interpreter (the same bits)
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) backend: BackendName,
+    /// How many threads may work; never changes a result (the plain engine uses one)
+    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(super) threads: Option<u32>,
+    /// Raise or lower a limit: max_microsteps, zeno_events, max_steps, max_guards, max_pieces (repeatable)
+    #[arg(long = "limit", value_name = "NAME=N", value_parser = limit)]
+    pub(super) limits: Vec<(String, u64)>,
+}
+
+/// What is written, and where.
+#[derive(Debug, Args)]
+pub(super) struct OutputArguments {
+    /// Where the files that run { } names go; made if it is not there
+    #[arg(short, long = "out", value_name = "DIR")]
+    pub(super) folder: Option<PathBuf>,
+    /// Write the event log here; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub(super) events: Option<PathBuf>,
+    /// Write the trajectory here; if run { } records nothing, all states at every step
+    #[arg(long, value_name = "FILE")]
+    pub(super) record: Option<PathBuf>,
+    /// Write the state of every agent at the end here
+    #[arg(long = "final", value_name = "FILE")]
+    pub(super) final_states: Option<PathBuf>,
+    /// Write counts and times here, as JSON
+    #[arg(long, value_name = "FILE")]
+    pub(super) stats: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CheckArguments {
+    /// The models
+    #[arg(value_name = "MODEL.hy", required = true)]
+    pub(super) models: Vec<PathBuf>,
+    /// Give a param another value, in its declared unit (repeatable)
+    #[arg(short, long = "param", value_name = "NAME=VALUE", value_parser = pair)]
+    pub(super) params: Vec<(String, String)>,
+    /// The form of the diagnostics; sarif is not built yet
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) format: Format,
+    /// Take warnings for errors; not built yet
+    #[arg(long, value_name = "KIND")]
+    pub(super) deny: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ShowArguments {
+    /// The model
+    #[arg(value_name = "MODEL.hy")]
+    pub(super) model: PathBuf,
+    /// Which form of the model
+    #[arg(long, value_enum)]
+    pub(super) stage: Stage,
+    /// Give a param another value, in its declared unit (repeatable)
+    #[arg(short, long = "param", value_name = "NAME=VALUE", value_parser = pair)]
+    pub(super) params: Vec<(String, String)>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExplainArguments {
+    /// A code; without one, all codes are listed
+    #[arg(value_name = "CODE")]
+    pub(super) code: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct FmtArguments {
+    /// Taken and refused, so that the message can name the command
+    #[arg(value_name = "MODEL.hy", trailing_var_arg = true, allow_hyphen_values = true)]
+    pub(super) rest: Vec<String>,
+}
+
+/// How the agents' clocks advance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum Algorithm {
+    /// Each agent has its own clock; exact about who reads whom
+    #[default]
+    Masim,
+    /// As published in 2004; not built yet
+    #[value(name = "masim-2004")]
+    Masim2004,
+    /// One clock for all, as published in 2004; not built yet
+    #[value(name = "sasim-2004")]
+    Sasim2004,
+}
+
+/// The form of the engine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum Engine {
+    /// Prunes pairs and uses all cores; not built yet
+    Fast,
+    /// Looks at everything, one thread
+    #[default]
+    Plain,
+}
+
+/// The method of integration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum Integrator {
+    /// What suits the model; for now tsit5
+    #[default]
+    Auto,
+    /// Not built yet
+    Taylor,
+    /// Tsitouras' explicit Runge-Kutta pair of orders 5 and 4
+    Tsit5,
+    /// Not built yet
+    Adams,
+    /// Not built yet
+    Stiff,
+}
+
+/// What evaluates the equations.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum BackendName {
+    /// Machine code
+    #[default]
+    Jit,
+    /// The interpreter
+    Interp,
+}
+
+/// What a false `assert` means.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum AssertLevel {
+    /// Exit code 4
+    #[default]
+    Error,
+    /// A warning
+    Warn,
+}
+
+/// The form of diagnostics.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    /// For people, on standard error
+    #[default]
+    Text,
+    /// For programs, on standard output
+    Json,
+    /// Not built yet
+    Sarif,
+}
+
+/// A form of the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Stage {
+    /// The syntax tree
+    Ast,
+    /// Names resolved, types known, agents made
+    Model,
+    /// Equations, guards with their rates, Jacobians
+    System,
+    /// The instructions of the interpreter
+    Tape,
+    /// The input of the machine code generator
+    Clif,
+}
+
+fn pair(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().into(), value.trim().into())),
+        Some(_) | None => Err("write NAME=VALUE".into()),
+    }
+}
+
+/// A count; `1e9` is one too.
+fn limit(text: &str) -> Result<(String, u64), String> {
+    let (name, value) = pair(text)?;
+    let count =
+        value.parse::<f64>().ok().filter(|count| count.fract() == 0.0 && (1.0..=1e18).contains(count));
+    match count {
+        Some(count) => Ok((name, count as u64)),
+        None => Err(format!("`{value}` is not a whole number from 1")),
+    }
+}
+
+fn finite_positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        Ok(_) | Err(_) => Err("a positive number is needed".into()),
+    }
+}
+
+fn finite_not_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        Ok(_) | Err(_) => Err("a number that is not negative is needed".into()),
+    }
+}

@@ -1,0 +1,99 @@
+//! From a path to a model: reads the file, and those that it names, and calls the doors of syntax and model.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::Refused;
+use super::arguments::SettingArguments;
+use crate::base::{Diagnostic, SourceMap};
+use crate::model::ir::Model;
+use crate::model::{Checked, Files, Settings};
+use crate::syntax::{self, Ast};
+
+/// The name under which messages show a model's path.
+pub(super) fn name_of(path: &Path) -> String {
+    path.display().to_string()
+}
+
+/// A model's text and tree, or what is wrong with the text.
+pub(super) struct Parsed {
+    pub(super) sources: SourceMap,
+    pub(super) tree: Result<Ast, Vec<Diagnostic>>,
+}
+
+/// Reads and parses. Refused if the file cannot be read or is not UTF-8.
+pub(super) fn parse(path: &Path) -> Result<Parsed, Refused> {
+    let text = fs::read_to_string(path)
+        .map_err(|error| format!("cannot read `{}`: {}", path.display(), reason(&error)))?;
+    let mut sources = SourceMap::default();
+    let file = sources.add(name_of(path), text.as_str());
+    let tree = syntax::parse(file, &text);
+    Ok(Parsed { sources, tree })
+}
+
+/// A model, or none and why.
+pub(super) struct Loaded {
+    pub(super) sources: SourceMap,
+    pub(super) diagnostics: Vec<Diagnostic>,
+    pub(super) model: Option<Model>,
+    /// All files that were read.
+    pub(super) inputs: Vec<PathBuf>,
+    /// Whether a file that the model names could not be read.
+    pub(super) unreadable: bool,
+}
+
+/// Reads, parses and checks.
+pub(super) fn load(path: &Path, settings: &Settings) -> Result<Loaded, Refused> {
+    let Parsed { mut sources, tree } = parse(path)?;
+    let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
+    let mut files = Folder { folder, inputs: vec![path.to_path_buf()], unreadable: false };
+    let Checked { model, diagnostics } = match tree {
+        Ok(tree) => crate::model::check(&tree, &mut sources, &mut files, settings),
+        Err(diagnostics) => Checked { model: None, diagnostics },
+    };
+    let Folder { inputs, unreadable, .. } = files;
+    Ok(Loaded { sources, diagnostics, model, inputs, unreadable })
+}
+
+/// The settings that the command line lays over the model's.
+pub(super) fn settings_of(arguments: &SettingArguments) -> Settings {
+    let SettingArguments { params, until, tolerance, absolute, seed } = arguments.clone();
+    Settings { params, until, tolerance, absolute, seed }
+}
+
+/// Settings that only give params.
+pub(super) fn settings_with(params: &[(String, String)]) -> Settings {
+    settings_of(&SettingArguments { params: params.to_vec(), ..SettingArguments::default() })
+}
+
+/// The data files of a model, found relative to it.
+struct Folder {
+    folder: PathBuf,
+    inputs: Vec<PathBuf>,
+    unreadable: bool,
+}
+
+impl Files for Folder {
+    fn read(&mut self, path: &str) -> io::Result<String> {
+        let path = self.folder.join(path);
+        let text = fs::read_to_string(&path);
+        match &text {
+            Ok(_) => self.inputs.push(path),
+            Err(_) => self.unreadable = true,
+        }
+        text.map_err(|error| io::Error::new(error.kind(), reason(&error)))
+    }
+}
+
+/// The operating system's words, without its number.
+pub(super) fn reason(error: &io::Error) -> String {
+    let text = error.to_string();
+    if error.kind() == io::ErrorKind::InvalidData {
+        return "it is not text in UTF-8".into();
+    }
+    match text.find(" (os error ") {
+        Some(end) => text[..end].to_string(),
+        None => text,
+    }
+}

@@ -1,0 +1,53 @@
+//! `hyc show`: a model at a stage of its way, as text.
+
+use super::arguments::{ShowArguments, Stage};
+use super::input::{Loaded, Parsed, load, parse, settings_with};
+use super::terminal::{say, tell};
+use super::{Exit, Refused};
+use crate::{calculus, codegen, model, syntax};
+
+/// Prints the stage, or what keeps the model from reaching it.
+pub(super) fn show(arguments: &ShowArguments) -> Result<Exit, Refused> {
+    if arguments.stage == Stage::Ast {
+        return show_tree(arguments);
+    }
+    let Loaded { sources, diagnostics, model, unreadable, .. } =
+        load(&arguments.model, &settings_with(&arguments.params))?;
+    tell(&sources, &diagnostics);
+    let Some(model) = model else {
+        return Ok(if unreadable { Exit::Usage } else { Exit::ModelErrors });
+    };
+    if arguments.stage == Stage::Model {
+        say(&model::dump(&model))?;
+        return Ok(Exit::Fine);
+    }
+    let system = match calculus::derive(&model) {
+        Ok(system) => system,
+        Err(diagnostics) => {
+            tell(&sources, &diagnostics);
+            return Ok(Exit::ModelErrors);
+        }
+    };
+    let text = match arguments.stage {
+        Stage::Ast | Stage::Model | Stage::System => calculus::dump(&system),
+        Stage::Tape => codegen::dump_tape(&system),
+        Stage::Clif => codegen::dump_clif(&system),
+    };
+    say(&text)?;
+    Ok(Exit::Fine)
+}
+
+/// The first stage needs no more than a text that parses.
+fn show_tree(arguments: &ShowArguments) -> Result<Exit, Refused> {
+    let Parsed { sources, tree } = parse(&arguments.model)?;
+    match tree {
+        Ok(tree) => {
+            say(&syntax::dump(&tree))?;
+            Ok(Exit::Fine)
+        }
+        Err(diagnostics) => {
+            tell(&sources, &diagnostics);
+            Ok(Exit::ModelErrors)
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! The files that a run writes: opened before it begins, so that nothing is computed that cannot be kept.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::Refused;
+use super::input::reason;
+use crate::output::Sink;
+
+/// Opens files for writing, each once, none that the run reads.
+pub(super) struct Sinks {
+    inputs: Vec<PathBuf>,
+    taken: Vec<PathBuf>,
+    on_stdout: bool,
+    names: Vec<String>,
+}
+
+impl Sinks {
+    /// `inputs` are the files that must not be overwritten.
+    pub(super) fn new(inputs: &[PathBuf]) -> Self {
+        let inputs = inputs.iter().filter_map(|path| identity(path)).collect();
+        Self { inputs, taken: Vec::new(), on_stdout: false, names: Vec::new() }
+    }
+
+    /// Opens a file, emptied; `-` is standard output.
+    pub(super) fn open(&mut self, path: &Path) -> Result<Sink, Refused> {
+        if path == Path::new("-") {
+            if std::mem::replace(&mut self.on_stdout, true) {
+                return Err("two outputs go to standard output".into());
+            }
+            return Ok(Sink { name: "standard output".into(), writer: Box::new(io::stdout()) });
+        }
+        self.take(path)?;
+        let file = File::create(path)
+            .map_err(|error| format!("cannot write `{}`: {}", path.display(), reason(&error)))?;
+        self.names.push(path.display().to_string());
+        Ok(Sink { name: path.display().to_string(), writer: Box::new(file) })
+    }
+
+    /// Whether one of the outputs is standard output.
+    pub(super) fn on_stdout(&self) -> bool {
+        self.on_stdout
+    }
+
+    /// The files opened so far.
+    pub(super) fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    fn take(&mut self, path: &Path) -> Result<(), Refused> {
+        let Some(identity) = identity(path) else { return Ok(()) };
+        if self.inputs.contains(&identity) {
+            return Err(format!("`{}` is a file that this run reads; write somewhere else", path.display()));
+        }
+        if self.taken.contains(&identity) {
+            return Err(format!("two outputs go to `{}`", path.display()));
+        }
+        self.taken.push(identity);
+        Ok(())
+    }
+}
+
+/// What tells one file from another, whether it exists or not; none for devices and pipes.
+fn identity(path: &Path) -> Option<PathBuf> {
+    match fs::metadata(path) {
+        Ok(metadata) if !metadata.is_file() => None,
+        Ok(_) => fs::canonicalize(path).ok(),
+        Err(_) => {
+            let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+            let folder = fs::canonicalize(parent.unwrap_or(Path::new("."))).ok()?;
+            Some(folder.join(path.file_name()?))
+        }
+    }
+}
+
+/// The folder for the files that a model names, made if it is not there.
+pub(super) fn prepare_folder(folder: Option<&Path>) -> Result<PathBuf, Refused> {
+    let Some(folder) = folder else { return Ok(PathBuf::new()) };
+    fs::create_dir_all(folder)
+        .map_err(|error| format!("cannot make the folder `{}`: {}", folder.display(), reason(&error)))?;
+    Ok(folder.to_path_buf())
+}
