@@ -8,3 +8,4 @@ mod codegen_program;
 mod cli;
 mod licences;
 mod tidy;
+mod errors;

@@ -1,0 +1,185 @@
+//! Has every error a code, every code an explanation, and every explanation an example that has the error and one that
+//! does not? The cases are the examples of `docs/ERRORS.md`; what is said about each lies in `errors/`.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use hyc::base::render::{Colours, render};
+use hyc::base::{Diagnostic, SourceMap};
+use hyc::cli::{Explanation, explanations};
+use hyc::codegen::{self, Backend};
+use hyc::model::{Files, Settings};
+use hyc::output::{Cast, Tables};
+use hyc::runtime::limits::Limits;
+use hyc::runtime::observe::End;
+use hyc::{calculus, model, runtime, syntax};
+
+/// Codes of limits and of machines that no short example shows.
+const WITHOUT_EXAMPLE: [&str; 12] = [
+    "HY0102", "HY0119", "HY0292", "HY0293", "HY0294", "HY0295", "HY0302", "HY0308", "HY0309", "HY0311",
+    "HY0401", "HY0402",
+];
+
+/// The code of a false assert: the run goes on, so no floor returns it.
+const FALSE_ASSERT: &str = "HY0590";
+
+/// The examples of an entry.
+struct Example {
+    bad: String,
+    good: String,
+    params: Vec<(String, String)>,
+    data: Vec<(String, String)>,
+}
+
+/// The fenced texts of an entry that have this mark.
+fn fenced(entry: &Explanation, mark: &str) -> Vec<String> {
+    let open = format!("```{mark}\n");
+    let after = entry.body.split(open.as_str()).skip(1);
+    after.map(|rest| rest.split("```").next().unwrap().to_string()).collect()
+}
+
+/// A bad and a good model, the values of `-p` in a command, and data files that begin with their names.
+fn example(entry: &Explanation) -> Option<Example> {
+    let mut models = fenced(entry, "hy").into_iter();
+    let (bad, good) = (models.next()?, models.next()?);
+    let command = fenced(entry, "sh").concat();
+    let mut words = command.split_whitespace();
+    let mut params = Vec::new();
+    while let Some(word) = words.next() {
+        if word == "-p" {
+            let (name, value) = words.next().unwrap().split_once('=').unwrap();
+            params.push((name.to_string(), value.to_string()));
+        }
+    }
+    let data = fenced(entry, "csv").into_iter().map(|text| {
+        let (name, rest) = text.split_once('\n').unwrap();
+        (name.to_string(), rest.to_string())
+    });
+    Some(Example { bad, good, params, data: data.collect() })
+}
+
+/// Data files in memory.
+struct Shelf<'a>(&'a [(String, String)]);
+
+impl Files for Shelf<'_> {
+    fn read(&mut self, path: &str) -> io::Result<String> {
+        let found = self.0.iter().find(|(name, _)| name == path);
+        found
+            .map(|(_, text)| text.clone())
+            .ok_or_else(|| io::Error::new(io::ErrorKind::NotFound, "no such file"))
+    }
+}
+
+/// What every floor has to say about a model, as far as it comes; a model with a `run` is run.
+fn diagnose(text: &str, example: &Example) -> (SourceMap, Vec<Diagnostic>) {
+    let mut sources = SourceMap::default();
+    let file = sources.add("model.hy", text);
+    let tree = match syntax::parse(file, text) {
+        Ok(tree) => tree,
+        Err(diagnostics) => return (sources, diagnostics),
+    };
+    let settings = Settings { params: example.params.clone(), ..Settings::default() };
+    let checked = model::check(&tree, &mut sources, &mut Shelf(&example.data), &settings);
+    let mut diagnostics = checked.diagnostics;
+    let Some(model) = checked.model else { return (sources, diagnostics) };
+    match calculus::derive(&model) {
+        Ok(system) if model.run.until.is_some() => diagnostics.extend(simulate(system)),
+        Ok(_) => {}
+        Err(found) => diagnostics.extend(found),
+    }
+    (sources, diagnostics)
+}
+
+fn simulate(system: calculus::system::System) -> Vec<Diagnostic> {
+    let program = codegen::compile(system, Backend::Interpreter).unwrap();
+    let cast = Cast::default();
+    let mut nothing = Tables::new(&cast);
+    let outcome = runtime::simulate(&program, &Limits::default(), &AtomicBool::new(false), &mut nothing);
+    let claims =
+        outcome.false_asserts.iter().map(|_| Diagnostic::warning(FALSE_ASSERT, "an assert was false"));
+    let claims: Vec<Diagnostic> = claims.collect();
+    match outcome.end {
+        End::Error(diagnostic) => vec![*diagnostic],
+        End::Until | End::Stop { .. } | End::Interrupted | End::Output(_) => claims,
+    }
+}
+
+#[test]
+fn every_bad_example_has_its_error() {
+    let mut wrong = Vec::new();
+    for entry in explanations() {
+        let Some(example) = example(&entry) else { continue };
+        let (sources, diagnostics) = diagnose(&example.bad, &example);
+        if !diagnostics.iter().any(|diagnostic| diagnostic.code == entry.code) {
+            wrong.push(format!("{}:\n{}", entry.code, render(&sources, &diagnostics, Colours::None)));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_good_example_is_sound() {
+    let mut wrong = Vec::new();
+    for entry in explanations() {
+        let Some(example) = example(&entry) else { continue };
+        let (sources, diagnostics) = diagnose(&example.good, &example);
+        if !diagnostics.is_empty() {
+            wrong.push(format!("{}:\n{}", entry.code, render(&sources, &diagnostics, Colours::None)));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_message_is_as_it_was() {
+    for entry in explanations().iter().filter(|entry| entry.code != FALSE_ASSERT) {
+        let Some(example) = example(entry) else { continue };
+        let (sources, diagnostics) = diagnose(&example.bad, &example);
+        insta::with_settings!({ snapshot_path => "errors", prepend_module_to_snapshot => false, omit_expression => true }, {
+            insta::assert_snapshot!(entry.code, render(&sources, &diagnostics, Colours::None));
+        });
+    }
+}
+
+#[test]
+fn every_code_is_explained_and_every_explanation_has_its_code() {
+    let used = codes_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    let explained: Vec<&str> = explanations().iter().map(|entry| entry.code).collect();
+    let unique: BTreeSet<&str> = explained.iter().copied().collect();
+    assert_eq!(explained, unique.iter().copied().collect::<Vec<_>>(), "in order, each once");
+    let used: BTreeSet<&str> = used.iter().map(String::as_str).collect();
+    let missing: Vec<_> = used.difference(&unique).collect();
+    let stale: Vec<_> = unique.difference(&used).collect();
+    assert!(missing.is_empty() && stale.is_empty(), "not explained: {missing:?}, never said: {stale:?}");
+}
+
+/// The codes that stand in quotes in the sources, tests aside.
+fn codes_below(folder: &Path) -> BTreeSet<String> {
+    let mut codes = BTreeSet::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            if !path.ends_with("tests") {
+                codes.extend(codes_below(&path));
+            }
+        } else if !path.ends_with("tests.rs") {
+            let text = fs::read_to_string(&path).unwrap();
+            for (k, _) in text.match_indices("\"HY") {
+                codes.extend(
+                    text.get(k + 1..k + 7).filter(|_| text[k + 7..].starts_with('"')).map(String::from),
+                );
+            }
+        }
+    }
+    codes
+}
+
+#[test]
+fn only_limits_and_machines_have_no_example() {
+    let without = explanations().into_iter().filter(|entry| example(entry).is_none());
+    let without: Vec<&str> = without.map(|entry| entry.code).collect();
+    assert_eq!(without, WITHOUT_EXAMPLE);
+}
