@@ -9,3 +9,4 @@ mod cli;
 mod licences;
 mod tidy;
 mod errors;
+mod documents;

@@ -1,0 +1,127 @@
+//! Is what the documents show true? Every sample is checked, every file that they quote is quoted as it is.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use hyc::base::render::{Colours, render};
+use hyc::base::{Diagnostic, SourceMap};
+use hyc::model::{Files, Settings};
+use hyc::{calculus, model, syntax};
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn document(name: &str) -> String {
+    fs::read_to_string(root().join(name)).unwrap()
+}
+
+/// The fenced texts that have this mark.
+fn fenced(text: &str, mark: &str) -> Vec<String> {
+    let open = format!("```{mark}\n");
+    let after = text.split(open.as_str()).skip(1);
+    after.map(|rest| rest.split("```").next().unwrap().to_string()).collect()
+}
+
+/// Samples name no data.
+struct NoFiles;
+
+impl Files for NoFiles {
+    fn read(&mut self, _: &str) -> io::Result<String> {
+        Err(io::ErrorKind::NotFound.into())
+    }
+}
+
+/// What is wrong with a text.
+fn diagnose(text: &str) -> (SourceMap, Vec<Diagnostic>) {
+    let mut sources = SourceMap::default();
+    let file = sources.add("sample.hy", text);
+    let tree = match syntax::parse(file, text) {
+        Ok(tree) => tree,
+        Err(diagnostics) => return (sources, diagnostics),
+    };
+    let checked = model::check(&tree, &mut sources, &mut NoFiles, &Settings::default());
+    let mut diagnostics = checked.diagnostics;
+    if let Some(Err(found)) = checked.model.as_ref().map(calculus::derive) {
+        diagnostics.extend(found);
+    }
+    (sources, diagnostics)
+}
+
+#[test]
+fn every_sample_of_the_reference_is_sound() {
+    let samples = fenced(&document("docs/LANGUAGE.md"), "hy");
+    assert!(samples.len() >= 7);
+    for sample in samples {
+        let (sources, diagnostics) = diagnose(&sample);
+        assert!(diagnostics.is_empty(), "{sample}\n{}", render(&sources, &diagnostics, Colours::None));
+    }
+}
+
+#[test]
+fn what_the_reference_calls_refused_is_refused_as_not_supported_yet() {
+    let samples = fenced(&document("docs/LANGUAGE.md"), "hy refused");
+    assert!(samples.len() >= 13);
+    for sample in samples {
+        let (sources, diagnostics) = diagnose(&sample);
+        let told = render(&sources, &diagnostics, Colours::None);
+        let refused = diagnostics.iter().any(|diagnostic| diagnostic.title.contains("not supported yet"));
+        assert!(refused, "{sample}\n{told}");
+        assert!(!diagnostics.iter().any(|diagnostic| diagnostic.code.starts_with("HY01")), "{sample}\n{told}");
+    }
+}
+
+#[test]
+fn the_model_of_the_readme_is_a_file() {
+    let samples = fenced(&document("README.md"), "hy");
+    assert_eq!(samples.len(), 1);
+    assert_eq!(samples[0], document("models/ball.hy"));
+    assert!(samples[0].lines().count() <= 16);
+}
+
+#[test]
+fn the_readme_shows_what_the_program_prints() {
+    let readme = document("README.md");
+    let shown = fenced(&readme, "text").remove(0);
+    let folder = tempfile::tempdir().unwrap();
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_hyc"))
+        .args(["run", "models/ball.hy", "--events", "-", "-q", "-o"])
+        .arg(folder.path())
+        .current_dir(root())
+        .output()
+        .unwrap();
+    assert!(output.status.success());
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert!(readme.contains("hyc run models/ball.hy --events - -q"));
+    assert_eq!(shown, printed.lines().take(shown.lines().count()).map(|line| format!("{line}\n")).collect::<String>());
+}
+
+#[test]
+fn the_two_commands_of_the_readme_are_what_ci_runs() {
+    let readme = document("README.md");
+    assert!(readme.contains("\ncargo test\n") && readme.contains("\ncargo run --release -- run models/highway.hy\n"));
+    let ci = document(".ci/run");
+    assert!(ci.contains("from_readme 'cargo test'") && ci.contains("from_readme 'cargo run'"));
+}
+
+#[test]
+fn every_model_says_in_its_first_comment_what_it_shows() {
+    for entry in fs::read_dir(root().join("models")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|ending| ending == "hy") {
+            let text = fs::read_to_string(&path).unwrap();
+            let name = Path::new(path.file_name().unwrap()).display().to_string();
+            assert!(text.starts_with(&format!("// {name}: ")), "{name}");
+        }
+    }
+}
+
+#[test]
+fn the_architecture_fits_on_a_few_pages_and_names_every_floor() {
+    let text = document("docs/ARCHITECTURE.md");
+    assert!(text.lines().count() < 150);
+    for floor in ["base", "math", "syntax", "model", "calculus", "codegen", "runtime", "output", "cli"] {
+        assert!(text.contains(&format!("| `{floor}` |")), "{floor}");
+    }
+}
