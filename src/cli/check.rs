@@ -23,7 +23,7 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<Exit, Refused> {
     for path in &arguments.models {
         match check_one(path, &settings) {
             Ok(checked) => {
-                worst = worst.max(checked.exit());
+                worst = worst.max(checked.exit);
                 match arguments.format {
                     Format::Text | Format::Sarif => tell_checked(path, &checked)?,
                     Format::Json => found.push(model_json(path, &checked)),
@@ -47,17 +47,7 @@ struct CheckedModel {
     sources: SourceMap,
     diagnostics: Vec<Diagnostic>,
     system: Option<System>,
-    unreadable: bool,
-}
-
-impl CheckedModel {
-    fn exit(&self) -> Exit {
-        match (&self.system, self.unreadable) {
-            (Some(_), _) => Exit::Fine,
-            (None, true) => Exit::Usage,
-            (None, false) => Exit::ModelErrors,
-        }
-    }
+    exit: Exit,
 }
 
 fn check_one(path: &Path, settings: &Settings) -> Result<CheckedModel, Refused> {
@@ -70,8 +60,9 @@ fn check_one(path: &Path, settings: &Settings) -> Result<CheckedModel, Refused> 
         }
         None => None,
     };
+    let exit = if system.is_some() { Exit::Fine } else { loaded.exit() };
     let (sources, diagnostics) = (loaded.sources, loaded.diagnostics);
-    Ok(CheckedModel { sources, diagnostics, system, unreadable: loaded.unreadable })
+    Ok(CheckedModel { sources, diagnostics, system, exit })
 }
 
 /// Diagnostics on standard error, one line for each sound model on standard output.

@@ -4,8 +4,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::Refused;
-use super::arguments::SettingArguments;
+use super::{Exit, Refused};
 use crate::base::{Diagnostic, SourceMap};
 use crate::model::ir::Model;
 use crate::model::{Checked, Files, Settings};
@@ -39,50 +38,48 @@ pub(super) struct Loaded {
     pub(super) model: Option<Model>,
     /// All files that were read.
     pub(super) inputs: Vec<PathBuf>,
-    /// Whether a file that the model names could not be read.
-    pub(super) unreadable: bool,
+}
+
+/// Errors of the user's words or of files, not of the model: a `-p` that cannot be, a data file that cannot be read.
+const USAGE_CODES: [&str; 3] = ["HY0260", "HY0261", "HY0272"];
+
+impl Loaded {
+    /// The exit code where there is no model.
+    pub(super) fn exit(&self) -> Exit {
+        let of_usage = |diagnostic: &Diagnostic| USAGE_CODES.contains(&diagnostic.code);
+        if self.diagnostics.iter().any(of_usage) { Exit::Usage } else { Exit::ModelErrors }
+    }
 }
 
 /// Reads, parses and checks.
 pub(super) fn load(path: &Path, settings: &Settings) -> Result<Loaded, Refused> {
     let Parsed { mut sources, tree } = parse(path)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
-    let mut files = Folder { folder, inputs: vec![path.to_path_buf()], unreadable: false };
+    let mut files = Folder { folder, inputs: vec![path.to_path_buf()] };
     let Checked { model, diagnostics } = match tree {
         Ok(tree) => crate::model::check(&tree, &mut sources, &mut files, settings),
         Err(diagnostics) => Checked { model: None, diagnostics },
     };
-    let Folder { inputs, unreadable, .. } = files;
-    Ok(Loaded { sources, diagnostics, model, inputs, unreadable })
-}
-
-/// The settings that the command line lays over the model's.
-pub(super) fn settings_of(arguments: &SettingArguments) -> Settings {
-    let SettingArguments { params, until, tolerance, absolute, seed } = arguments.clone();
-    Settings { params, until, tolerance, absolute, seed }
+    Ok(Loaded { sources, diagnostics, model, inputs: files.inputs })
 }
 
 /// Settings that only give params.
 pub(super) fn settings_with(params: &[(String, String)]) -> Settings {
-    settings_of(&SettingArguments { params: params.to_vec(), ..SettingArguments::default() })
+    Settings { params: params.to_vec(), ..Settings::default() }
 }
 
 /// The data files of a model, found relative to it.
 struct Folder {
     folder: PathBuf,
     inputs: Vec<PathBuf>,
-    unreadable: bool,
 }
 
 impl Files for Folder {
     fn read(&mut self, path: &str) -> io::Result<String> {
         let path = self.folder.join(path);
-        let text = fs::read_to_string(&path);
-        match &text {
-            Ok(_) => self.inputs.push(path),
-            Err(_) => self.unreadable = true,
-        }
-        text.map_err(|error| io::Error::new(error.kind(), reason(&error)))
+        let text = fs::read_to_string(&path).map_err(|error| io::Error::new(error.kind(), reason(&error)))?;
+        self.inputs.push(path);
+        Ok(text)
     }
 }
 

@@ -9,7 +9,6 @@ mod terminal;
 mod input;
 mod progress;
 mod sinks;
-mod record;
 mod claims;
 mod refusal;
 mod run;

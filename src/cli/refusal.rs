@@ -1,7 +1,9 @@
-//! Options of the interface that are not built yet: each is refused by its name.
+//! What is refused before anything is done: options that are not built yet, each by its name, and a run without end.
 
 use super::Refused;
 use super::arguments::{Algorithm, CheckArguments, Engine, EngineArguments, Format, Integrator};
+use crate::model::Model;
+use crate::model::ir::Action;
 
 /// What `hyc fmt` says.
 pub(super) const FORMATTER: &str = "`hyc fmt` is not built yet: the printer does not keep comments so far";
@@ -38,4 +40,26 @@ pub(super) fn refuse_check(arguments: &CheckArguments) -> Result<(), Refused> {
 
 fn not_built(option: &str, instead: &str) -> Refused {
     format!("`{option}` is not built yet; there is `{instead}`")
+}
+
+/// Refuses a model that neither `until` nor a `stop` ever ends.
+pub(super) fn refuse_endless(model: &Model) -> Result<(), Refused> {
+    let of_types = model.types.iter().flat_map(|ty| {
+        let modes = ty.modes.iter().flat_map(|mode| [&mode.entry, &mode.exit]);
+        modes.chain(ty.transitions.iter().map(|transition| &transition.actions))
+    });
+    let of_pairs = model.interactions.iter().flat_map(|interaction| &interaction.transitions);
+    let mut lists = of_types.chain(of_pairs.map(|transition| &transition.actions));
+    if model.run.until.is_some() || lists.any(|actions| stops(actions)) {
+        return Ok(());
+    }
+    Err("the run has no end: write `run { until 10 }`, add `--until 10`, or let an action `stop`".into())
+}
+
+fn stops(actions: &[Action]) -> bool {
+    actions.iter().any(|action| match action {
+        Action::Stop { .. } => true,
+        Action::If { then, otherwise, .. } => stops(then) || stops(otherwise),
+        Action::Assign { .. } | Action::Goto { .. } => false,
+    })
 }

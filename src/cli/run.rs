@@ -4,11 +4,10 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use super::arguments::{AssertLevel, BackendName, RunArguments};
-use super::input::{Loaded, load, name_of, settings_of};
+use super::arguments::{AssertLevel, BackendName, RunArguments, SettingArguments};
+use super::input::{Loaded, load, name_of};
 use super::progress::ProgressLine;
-use super::record::arrange_records;
-use super::refusal::refuse_engine;
+use super::refusal::{refuse_endless, refuse_engine};
 use super::sinks::{Sinks, prepare_folder};
 use super::terminal::{complain, say, say_aside, tell};
 use super::{Exit, Refused, claims};
@@ -16,7 +15,7 @@ use crate::base::{Diagnostic, SourceMap};
 use crate::calculus;
 use crate::codegen::program::Program;
 use crate::codegen::{self, Backend};
-use crate::model::ir::Model;
+use crate::model::{Model, Settings};
 use crate::output::{Cast, Report, Sink, Tables, TypeColumns, statistics, summary};
 use crate::runtime;
 use crate::runtime::limits::Limits;
@@ -30,13 +29,11 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     refuse_engine(&arguments.engine)?;
     let limits = limits_of(&arguments.engine.limits)?;
     let begun = Instant::now();
-    let loaded = load(&arguments.model, &settings_of(&arguments.settings))?;
+    let loaded = load(&arguments.model, &settings_of(arguments))?;
     tell(&loaded.sources, &loaded.diagnostics);
-    let Loaded { sources, model, inputs, unreadable, .. } = loaded;
-    let Some(mut model) = model else {
-        return Ok(if unreadable { Exit::Usage } else { Exit::ModelErrors });
-    };
-    arrange_records(&mut model, arguments.outputs.record.as_deref())?;
+    let exit = loaded.exit();
+    let Loaded { sources, model: Some(model), inputs, .. } = loaded else { return Ok(exit) };
+    refuse_endless(&model)?;
     let program = match compile(&model, arguments.engine.backend) {
         Ok(program) => program,
         Err(diagnostics) => {
@@ -90,6 +87,12 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     }
 }
 
+/// What the command line lays over the model.
+fn settings_of(arguments: &RunArguments) -> Settings {
+    let SettingArguments { params, until, tolerance, absolute, seed } = arguments.settings.clone();
+    Settings { params, until, tolerance, absolute, seed, record_all: arguments.outputs.record.is_some() }
+}
+
 /// The lower floors, one after the other.
 fn compile(model: &Model, backend: BackendName) -> Result<Program, Vec<Diagnostic>> {
     let system = calculus::derive(model)?;
@@ -113,6 +116,12 @@ fn open_outputs<'a>(
     let events = wanted.events.clone().or_else(|| program.run.events.as_ref().map(|file| folder.join(file)));
     if let Some(path) = events {
         tables.event_log(sinks.open(&path)?).map_err(|error| error.to_string())?;
+    }
+    let n_records = program.run.records.len();
+    if wanted.record.is_some() && n_records > 1 {
+        return Err(format!(
+            "run {{ }} has {n_records} records with files of their own: leave `--record` out"
+        ));
     }
     for record in &program.run.records {
         let path = match (&wanted.record, &record.file) {

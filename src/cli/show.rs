@@ -11,12 +11,10 @@ pub(super) fn show(arguments: &ShowArguments) -> Result<Exit, Refused> {
     if arguments.stage == Stage::Ast {
         return show_tree(arguments);
     }
-    let Loaded { sources, diagnostics, model, unreadable, .. } =
-        load(&arguments.model, &settings_with(&arguments.params))?;
-    tell(&sources, &diagnostics);
-    let Some(model) = model else {
-        return Ok(if unreadable { Exit::Usage } else { Exit::ModelErrors });
-    };
+    let loaded = load(&arguments.model, &settings_with(&arguments.params))?;
+    tell(&loaded.sources, &loaded.diagnostics);
+    let exit = loaded.exit();
+    let Loaded { sources, model: Some(model), .. } = loaded else { return Ok(exit) };
     if arguments.stage == Stage::Model {
         say(&model::dump(&model))?;
         return Ok(Exit::Fine);

@@ -156,7 +156,7 @@ fn a_record_is_made_up_where_the_model_has_none() {
     let folder = folder(&[("ball.hy", BALL), ("plain.hy", &text)]);
     expect(&hyc(&folder, &["run", "plain.hy", "--record", "all.csv"]), 0, &["all.csv"]);
     let record = read(&folder, "all.csv");
-    assert!(record.starts_with("time,micro,agent,mode,x,v\n0,0,ball,,1,0\n"), "{record}");
+    assert!(record.starts_with("time,micro,agent,mode,x,v,n\n0,0,ball,,1,0,0\n"), "{record}");
     assert!(record.contains(",others[1],"));
     expect(&hyc(&folder, &["run", "ball.hy", "--record", "mine.csv"]), 0, &["mine.csv"]);
     assert!(read(&folder, "mine.csv").starts_with("time,micro,agent,mode,x,v,n\n"));
@@ -173,8 +173,9 @@ fn a_model_with_errors_ends_with_1_and_writes_nothing() {
 
 #[test]
 fn wrong_usage_ends_with_2_and_says_what_is_wrong() {
-    let folder = folder(&[("ball.hy", BALL)]);
-    let cases: [(&[&str], &str); 18] = [
+    let folder = folder(&[("ball.hy", BALL), ("endless.hy", &BALL.replace("until 1 ", ""))]);
+    let cases: [(&[&str], &str); 19] = [
+        (&["run", "endless.hy"], "the run has no end"),
         (&["run", "missing.hy"], "cannot read `missing.hy`: No such file"),
         (&["run"], "MODEL.hy"),
         (&["rum", "ball.hy"], "run"),
@@ -204,9 +205,8 @@ fn wrong_usage_ends_with_2_and_says_what_is_wrong() {
 #[test]
 fn a_param_that_the_model_does_not_have_is_refused() {
     let folder = folder(&[("ball.hy", BALL)]);
-    let done = hyc(&folder, &["run", "ball.hy", "-p", "gg=3"]);
-    assert!(done.code == 1 || done.code == 2, "{}", done.code);
-    expect(&done, done.code, &["gg"]);
+    expect(&hyc(&folder, &["run", "ball.hy", "-p", "gg=3"]), 2, &["HY0260", "gg", "did you mean `g`?"]);
+    expect(&hyc(&folder, &["run", "ball.hy", "-p", "g=fast"]), 2, &["HY0261", "fast"]);
     assert!(!folder.path().join("events.csv").exists());
 }
 

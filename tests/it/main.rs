@@ -1,4 +1,6 @@
-//! tests
+//! The tests of the whole product: each file is named after a question and asks it of models, not of inner functions.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod syntax;
 mod model;
