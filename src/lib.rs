@@ -8,3 +8,4 @@ pub mod calculus;
 pub mod codegen;
 pub mod runtime;
 pub mod output;
+pub mod cli;

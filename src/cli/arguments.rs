@@ -49,7 +49,7 @@ pub(super) struct RunArguments {
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct SettingArguments {
     /// Give a param another value, in its declared unit (repeatable)
-    #[arg(short, long = "param", value_name = "NAME=VALUE", value_parser = pair)]
+    #[arg(short = 'p', long = "param", value_name = "NAME=VALUE", value_parser = pair)]
     pub(super) params: Vec<(String, String)>,
     /// Run until this time, in seconds
     #[arg(long, value_name = "T", value_parser = finite_not_negative)]
@@ -92,7 +92,7 @@ pub(super) struct EngineArguments {
 #[derive(Debug, Args)]
 pub(super) struct OutputArguments {
     /// Where the files that run { } names go; made if it is not there
-    #[arg(short, long = "out", value_name = "DIR")]
+    #[arg(short = 'o', long = "out", value_name = "DIR")]
     pub(super) folder: Option<PathBuf>,
     /// Write the event log here; `-` is standard output
     #[arg(long, value_name = "FILE")]
@@ -114,7 +114,7 @@ pub(super) struct CheckArguments {
     #[arg(value_name = "MODEL.hy", required = true)]
     pub(super) models: Vec<PathBuf>,
     /// Give a param another value, in its declared unit (repeatable)
-    #[arg(short, long = "param", value_name = "NAME=VALUE", value_parser = pair)]
+    #[arg(short = 'p', long = "param", value_name = "NAME=VALUE", value_parser = pair)]
     pub(super) params: Vec<(String, String)>,
     /// The form of the diagnostics; sarif is not built yet
     #[arg(long, value_enum, default_value_t)]
@@ -133,7 +133,7 @@ pub(super) struct ShowArguments {
     #[arg(long, value_enum)]
     pub(super) stage: Stage,
     /// Give a param another value, in its declared unit (repeatable)
-    #[arg(short, long = "param", value_name = "NAME=VALUE", value_parser = pair)]
+    #[arg(short = 'p', long = "param", value_name = "NAME=VALUE", value_parser = pair)]
     pub(super) params: Vec<(String, String)>,
 }
 
