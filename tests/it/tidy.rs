@@ -186,8 +186,11 @@ fn file_names_say_what_is_inside() {
 #[test]
 fn files_stay_readable_in_one_sitting() {
     let long = sources().into_iter().filter(|source| !source.is_test());
-    let long = long.map(|source| (source.text.lines().count(), source.path)).filter(|(n, _)| *n > 520);
-    hold("no file is over about 500 lines", long.map(|(n, path)| format!("{path}: {n} lines")).collect());
+    let long = long.map(|source| (source.text.lines().count(), source.path)).filter(|(n, _)| *n > 600);
+    hold(
+        "a file of more than 600 lines holds more than one thing",
+        long.map(|(n, path)| format!("{path}: {n} lines")).collect(),
+    );
 }
 
 #[test]
