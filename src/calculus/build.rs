@@ -50,9 +50,10 @@ pub fn value(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> 
                     scope.memo.insert((env, expr), value);
                 }
                 Err(Wait::For(inner_env, inner)) => {
-                    if !waiting.insert((inner_env, inner)) {
-                        return Err(Error::RateCircle { span: draft.model.exprs[inner].span });
-                    }
+                    assert!(
+                        waiting.insert((inner_env, inner)),
+                        "the model refuses circles of lets, functions and rates"
+                    );
                     stack.push((inner_env, inner));
                     continue;
                 }
@@ -105,9 +106,6 @@ fn step(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> Resul
             None => draft.graph.number(f64::NAN),
         },
         ExprKind::Apply(op, operands) => {
-            if matches!(expr.ty, Type::Agent(_) | Type::Link(_)) {
-                return choice(draft, scope, env, operands, span);
-            }
             let nodes =
                 operands.iter().map(|&e| need_number(scope, env, e)).collect::<Result<Vec<_>, _>>()?;
             draft.graph.apply(*op, &nodes)
@@ -334,23 +332,4 @@ fn in_mode(draft: &mut Draft, scope: &Scope, slot: usize, mode: ModeId) -> NodeI
         any = draft.graph.binary(Op::Or, any, here);
     }
     any
-}
-
-/// `if c then lead else other`, where c is the same in every run.
-fn choice(
-    draft: &mut Draft,
-    scope: &mut Scope,
-    env: EnvId,
-    operands: &[ExprId],
-    span: Span,
-) -> Result<Value, Wait> {
-    let &[condition, a, b] = operands else { unreachable!("only `if` chooses between agents") };
-    let condition = need_number(scope, env, condition)?;
-    match draft.graph.constant(condition) {
-        Some(c) => need(scope, env, if c != 0.0 { a } else { b }),
-        None => {
-            let (a, b) = (need_agent(scope, env, a)?, need_agent(scope, env, b)?);
-            if a == b { Ok(Value::Agent(a)) } else { Err(Error::ChoiceOfAgents { span }.into()) }
-        }
-    }
 }

@@ -15,9 +15,9 @@ use crate::calculus::system::{Relation, Slot};
 use crate::math::Op;
 use crate::model::ir::{ExprId, ExprKind, Quantifier, Type};
 
-/// How many comparisons and tests one condition may have (HY0306).
+/// How many comparisons and tests one condition may have (HY0305).
 pub const PARTS_MAX: usize = 10_000;
-/// How deep `if`, quantifiers, lets and functions of a condition may be nested (HY0307).
+/// How deep `if`, quantifiers, lets and functions of a condition may be nested (HY0306).
 pub const DEPTH_MAX: usize = 500;
 
 /// A condition over nodes.

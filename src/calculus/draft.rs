@@ -45,8 +45,11 @@ impl<'m> Draft<'m> {
     pub fn keep<T>(&mut self, result: Result<T, Error>) -> Option<T> {
         result
             .map_err(|error| {
+                let is_limit = error.is_limit();
                 let diagnostic = error.diagnostic();
-                if !self.diagnostics.contains(&diagnostic) {
+                let said =
+                    |other: &Diagnostic| *other == diagnostic || (is_limit && other.code == diagnostic.code);
+                if !self.diagnostics.iter().any(said) {
                     self.diagnostics.push(diagnostic);
                 }
             })

@@ -9,8 +9,6 @@ pub enum Error {
     QuantifierInNumber { span: Span },
     /// `not rising(..)`, `not crossing(..)`.
     EventNegated { word: &'static str, span: Span },
-    /// x' that is computed from itself.
-    RateCircle { span: Span },
     /// The rate of another agent in a flow.
     ForeignRate { span: Span },
     /// Too many agents in one frame.
@@ -19,11 +17,21 @@ pub enum Error {
     ConditionTooLarge { limit: usize, span: Span },
     /// A condition too deeply nested once lets and functions are inlined.
     ConditionTooDeep { limit: usize, span: Span },
-    /// `if c then lead else none`, where c is known at run time only.
-    ChoiceOfAgents { span: Span },
 }
 
 impl Error {
+    /// Whether a limit is exceeded, of which one report is enough.
+    pub fn is_limit(&self) -> bool {
+        match self {
+            Error::TooManySlots { .. } | Error::ConditionTooLarge { .. } | Error::ConditionTooDeep { .. } => {
+                true
+            }
+            Error::QuantifierInNumber { .. } | Error::EventNegated { .. } | Error::ForeignRate { .. } => {
+                false
+            }
+        }
+    }
+
     /// The message to a person.
     pub fn diagnostic(self) -> Diagnostic {
         match self {
@@ -39,36 +47,28 @@ impl Error {
                     .label(span, "true at an instant, so its negation holds nearly always")
                     .help("negate the condition inside it")
             }
-            Error::RateCircle { span } => Diagnostic::error("HY0303", "a rate that is computed from itself")
-                .label(span, "needs its own value")
-                .help("solve the equations for the rates by hand"),
             Error::ForeignRate { span } => {
-                Diagnostic::error("HY0304", "the rate of another agent in a flow is not supported yet")
+                Diagnostic::error("HY0303", "the rate of another agent in a flow is not supported yet")
                     .label(span, "a rate, not a state")
                     .help("write the other agent's equation in its place")
             }
             Error::TooManySlots { limit, span } => {
-                Diagnostic::error("HY0305", "an expression that reaches too many agents")
+                Diagnostic::error("HY0304", "an expression that reaches too many agents")
                     .label(span, "one more than can be read together")
                     .note(format!("the limit is {limit} agents bound by quantifiers or reached by links"))
-                    .help("does a `let` read the same `let` through a link, without end?")
+                    .help("shorten the chain of links, or test for fewer agents at once")
             }
             Error::ConditionTooLarge { limit, span } => {
-                Diagnostic::error("HY0306", "a condition that becomes too large")
+                Diagnostic::error("HY0305", "a condition that becomes too large")
                     .label(span, "once lets and functions are put in")
                     .note(format!("the limit is {limit} comparisons and tests"))
                     .help("keep what is used several times in a `discrete`, or split the transition")
             }
             Error::ConditionTooDeep { limit, span } => {
-                Diagnostic::error("HY0307", "a condition that becomes too deeply nested")
+                Diagnostic::error("HY0306", "a condition that becomes too deeply nested")
                     .label(span, "once lets and functions are put in")
                     .note(format!("the limit is {limit} levels"))
                     .help("shorten the chain of lets or functions that it goes through")
-            }
-            Error::ChoiceOfAgents { span } => {
-                Diagnostic::error("HY0308", "a choice between agents is not supported yet")
-                    .label(span, "which agent this is depends on the state")
-                    .help("choose between the values that are read from the agents")
             }
         }
     }

@@ -12,7 +12,7 @@ use crate::calculus::graph::NodeId;
 use crate::calculus::system::{Frame, Slot};
 use crate::model::ir::{BinderId, ExprId, Model, TypeId};
 
-/// How many agents one frame may read (HY0305).
+/// How many agents one frame may read (HY0304).
 pub const SLOTS_MAX: usize = 256;
 
 /// What an expression has become.
