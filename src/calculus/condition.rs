@@ -70,12 +70,15 @@ impl Sense {
 
 /// Lowers a boolean expression.
 pub fn lower(draft: &mut Draft, scope: &mut Scope, expr: ExprId, sense: Sense) -> Result<Cond, Error> {
-    Lowering { draft, scope, parts: 0, depth: 0, quantifiers: 0 }.lower(Scope::TOP, expr, sense)
+    let span = draft.model.exprs[expr].span;
+    Lowering { draft, scope, span, parts: 0, depth: 0, quantifiers: 0 }.lower(Scope::TOP, expr, sense)
 }
 
 struct Lowering<'d, 'm> {
     draft: &'d mut Draft<'m>,
     scope: &'d mut Scope,
+    /// Where the whole condition stands.
+    span: Span,
     parts: usize,
     depth: usize,
     quantifiers: usize,
@@ -83,10 +86,9 @@ struct Lowering<'d, 'm> {
 
 impl Lowering<'_, '_> {
     fn lower(&mut self, env: EnvId, expr: ExprId, sense: Sense) -> Result<Cond, Error> {
-        let span = self.draft.model.exprs[expr].span;
         self.depth += 1;
         if self.depth > DEPTH_MAX {
-            return Err(Error::ConditionTooDeep { limit: DEPTH_MAX, span });
+            return Err(Error::ConditionTooDeep { limit: DEPTH_MAX, span: self.span });
         }
         let result = self.lower_here(env, expr, sense);
         self.depth -= 1;
@@ -400,7 +402,7 @@ impl Lowering<'_, '_> {
 
     /// A boolean node.
     fn test(&mut self, node: NodeId, sense: Sense, span: Span) -> Result<Cond, Error> {
-        self.count(span)?;
+        self.count()?;
         let graph = &mut self.draft.graph;
         if graph.moves(node) {
             // Only a boolean that went through a number: 1 where true.
@@ -415,13 +417,17 @@ impl Lowering<'_, '_> {
     }
 
     fn atom(&mut self, relation: Relation, g: NodeId, span: Span) -> Result<Cond, Error> {
-        self.count(span)?;
+        self.count()?;
         Ok(Cond::Atom(relation, g, span))
     }
 
-    fn count(&mut self, span: Span) -> Result<(), Error> {
+    fn count(&mut self) -> Result<(), Error> {
         self.parts += 1;
-        if self.parts > PARTS_MAX { Err(Error::ConditionTooLarge { limit: PARTS_MAX, span }) } else { Ok(()) }
+        if self.parts > PARTS_MAX {
+            Err(Error::ConditionTooLarge { limit: PARTS_MAX, span: self.span })
+        } else {
+            Ok(())
+        }
     }
 }
 

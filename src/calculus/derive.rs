@@ -320,22 +320,46 @@ pub fn times(graph: &mut Graph, a: NodeId, b: NodeId) -> NodeId {
         if let Some(guarded) = inside_branch(graph, x, y, times) {
             return guarded;
         }
-        match graph.node(x) {
-            Node::Unary(Op::Neg, z) => {
-                let product = times(graph, z, y);
-                return negative(graph, product);
-            }
-            Node::Binary(Op::Div, n, d) if graph.constant(n) == Some(1.0) => return over(graph, y, d),
-            _ => {}
-        }
-        if let (Some(k), Node::Binary(Op::Mul, u, v)) = (graph.constant(x), graph.node(y))
-            && let Some((l, rest)) = graph.constant(u).map(|l| (l, v)).or(graph.constant(v).map(|l| (l, u)))
+        if let Node::Binary(Op::Div, n, d) = graph.node(x)
+            && graph.constant(n) == Some(1.0)
         {
-            let factor = graph.number(k * l);
-            return graph.binary(Op::Mul, factor, rest);
+            return over(graph, y, d);
         }
     }
-    graph.binary(Op::Mul, a, b)
+    match (factored(graph, a), factored(graph, b)) {
+        ((k, None), (l, None)) => graph.number(k * l),
+        ((k, Some(u)), (l, None)) | ((k, None), (l, Some(u))) => scaled(graph, k * l, u),
+        ((1.0, Some(_)), (1.0, Some(_))) => graph.binary(Op::Mul, a, b),
+        ((k, Some(u)), (l, Some(v))) => {
+            let product = times(graph, u, v);
+            scaled(graph, k * l, product)
+        }
+    }
+}
+
+/// A constant factor and the rest; no rest if it is constant.
+fn factored(graph: &Graph, a: NodeId) -> (f64, Option<NodeId>) {
+    if let Some(k) = graph.constant(a) {
+        return (k, None);
+    }
+    match graph.node(a) {
+        Node::Unary(Op::Neg, u) => (-1.0, Some(u)),
+        Node::Binary(Op::Mul, u, v) => match (graph.constant(u), graph.constant(v)) {
+            (Some(k), _) => (k, Some(v)),
+            (None, Some(k)) => (k, Some(u)),
+            (None, None) => (1.0, Some(a)),
+        },
+        _ => (1.0, Some(a)),
+    }
+}
+
+/// `k u`, formally.
+fn scaled(graph: &mut Graph, k: f64, u: NodeId) -> NodeId {
+    if k == -1.0 {
+        return negative(graph, u);
+    }
+    let k = graph.number(k);
+    graph.binary(Op::Mul, k, u)
 }
 
 /// `a / b`, formally.

@@ -166,10 +166,16 @@ impl<'a> Sheet<'a> {
             Node::Binary(Op::Add, a, b) => match (self.graph.constant(a), self.graph.constant(b)) {
                 (Some(c), None) => format!("{} {sign} {}", side(b), constant(-c)),
                 (None, Some(c)) => format!("{} {sign} {}", side(a), constant(-c)),
-                (Some(_), Some(_)) | (None, None) => format!("{} {sign} 0", self.definition(g)),
+                (Some(_), Some(_)) | (None, None) => format!("{} {sign} 0", self.whole(g)),
             },
-            _ => format!("{} {sign} 0", self.definition(g)),
+            _ => format!("{} {sign} 0", self.whole(g)),
         }
+    }
+
+    /// A side of a comparison, even where it has a name.
+    fn whole(&self, id: NodeId) -> String {
+        let (text, strength) = self.write(id);
+        if strength < Strength::Sum { format!("({text})") } else { text }
     }
 
     fn operand(&self, id: NodeId, least: Strength) -> String {
@@ -209,10 +215,15 @@ impl<'a> Sheet<'a> {
     fn write_binary(&self, op: Op, a: NodeId, b: NodeId) -> (String, Strength) {
         use Strength::{And, Comparison, Negation, Operand, Or, Power, Product, Sum};
         let is_constant = |id| self.graph.constant(id).is_some();
+        let (a, b) = match op {
+            Op::Mul if is_constant(b) => (b, a),
+            Op::Add | Op::Eq | Op::Ne if is_constant(a) => (b, a),
+            _ => (a, b),
+        };
         let (sign, own, left, right) = match op {
-            Op::Add => (" + ", Sum, Sum, Product),
+            Op::Add => (" + ", Sum, Sum, self.associated(op, b, Product)),
             Op::Sub => (" - ", Sum, Sum, Product),
-            Op::Mul => ("*", Product, Product, Power),
+            Op::Mul => ("*", Product, Product, self.associated(op, b, Power)),
             Op::Div => ("/", Product, Product, Power),
             Op::Powi | Op::Pow => ("^", Power, Operand, Negation),
             Op::Lt => (" < ", Comparison, Sum, Sum),
@@ -226,16 +237,24 @@ impl<'a> Sheet<'a> {
         if let Some(text) = self.about_agents(op, a, b) {
             return (text, Comparison);
         }
-        let (a, b) = match op {
-            Op::Mul if is_constant(b) => (b, a),
-            Op::Add | Op::Eq | Op::Ne if is_constant(a) => (b, a),
-            _ => (a, b),
-        };
+        if op == Op::Mul && [a, b].iter().any(|&id| self.graph.constant(id).is_some_and(|k| k < 0.0)) {
+            let (k, rest) = if is_constant(a) { (a, b) } else { (b, a) };
+            let k = self.graph.constant(k).map_or(String::new(), constant);
+            return (format!("{k}*{}", self.operand(rest, Product)), Negation);
+        }
         if matches!(op, Op::Pow | Op::Powi) {
             let exponent = if is_constant(b) { Negation } else { Operand };
             return (format!("{}^{}", self.operand(a, Operand), self.operand(b, exponent)), Power);
         }
         (format!("{}{sign}{}", self.operand(a, left), self.operand(b, right)), own)
+    }
+
+    /// The least strength of a right operand: `a + (b + c)` and `a*(b*c)` need no brackets to be read.
+    fn associated(&self, op: Op, right: NodeId, otherwise: Strength) -> Strength {
+        match self.graph.node(right) {
+            Node::Binary(inner, ..) if inner == op => Strength::Choice,
+            _ => otherwise,
+        }
     }
 
     /// `o is Drive` for a test of the mode column, `lead` for "the link is not none".

@@ -142,7 +142,12 @@ impl Graph {
                     return self.intern(Node::Binary(Op::Sub, x, c));
                 }
                 (None, Node::Unary(Op::Neg, z)) => return self.difference(x, z),
-                _ => {}
+                (None, node) => {
+                    if let Some(opposite) = self.opposite_product(node) {
+                        return self.difference(x, opposite);
+                    }
+                }
+                (Some(_), _) => {}
             }
         }
         self.sorted(Op::Add, a, b)
@@ -156,8 +161,21 @@ impl Graph {
                 self.sorted(Op::Add, a, c)
             }
             (None, Node::Unary(Op::Neg, z)) => self.sum(a, z),
-            _ => self.intern(Node::Binary(Op::Sub, a, b)),
+            (None, node) => match self.opposite_product(node) {
+                Some(opposite) => self.sum(a, opposite),
+                None => self.intern(Node::Binary(Op::Sub, a, b)),
+            },
+            (Some(_), _) => self.intern(Node::Binary(Op::Sub, a, b)),
         }
+    }
+
+    /// `k x` for `(-k) x` with a positive k.
+    fn opposite_product(&mut self, node: Node) -> Option<NodeId> {
+        let Node::Binary(Op::Mul, x, y) = node else { return None };
+        [(x, y), (y, x)].into_iter().find_map(|(factor, rest)| {
+            let k = self.constant(factor).filter(|&k| k < 0.0)?;
+            Some(self.scaled(-k, rest))
+        })
     }
 
     /// A constant times something that is none.

@@ -4,6 +4,7 @@
 
 mod syntax;
 mod model;
+mod calculus;
 mod codegen_systems;
 mod codegen_bits;
 mod codegen_program;
