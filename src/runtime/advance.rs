@@ -345,7 +345,8 @@ fn kink_time(
     let start = agents.agents[agent].segment.start;
     let mut search = |atom: &Atom, truth: bool| {
         let closed = atom.relation == Relation::NonPositive;
-        let known = Known { truth, closed, slack: 0.0, reach: 2.0 * f64::EPSILON * until.abs() };
+        let reach = 2.0 * f64::EPSILON * until.abs();
+        let known = Known { truth, closed, slack: 0.0, settled: false, reach };
         let mut curve = AtomCurve::new(agents, atom, slots, curves);
         match first_flip(&mut curve, start, until, known, pieces_max) {
             Search::None => None,

@@ -148,6 +148,7 @@ impl<'p> Engine<'p, '_> {
         state.touched = touched;
         state.rooted = rule == Rule::Woken && before.rooted && unchanged;
         self.recertify(index, time);
+        self.guards.atoms[index].settled = true;
     }
 
     /// Has an atom certified from `time` on; what was found beyond is void.
@@ -155,6 +156,7 @@ impl<'p> Engine<'p, '_> {
         let state = &mut self.guards.atoms[index];
         state.certified = time;
         state.flip = f64::INFINITY;
+        state.settled = false;
         state.version += 1;
         self.queues.uncertified.push(Due { time, number: index as u32, version: state.version });
     }

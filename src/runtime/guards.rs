@@ -97,10 +97,14 @@ pub struct AtomState {
     pub certified: f64,
     /// When it changes next, s; infinite if that is not known.
     pub flip: f64,
+    /// Whether it changes only by coming within rounding of zero: then it may change back at once.
+    pub touch: bool,
     /// The last time before the flip at which the old truth holds, s.
     pub near: f64,
     /// See `Known::slack`.
     pub slack: f64,
+    /// See `Known::settled`.
+    pub settled: bool,
     /// How far ahead to try to sleep, s.
     pub stride: f64,
     /// Entries of other versions in the queues are void.
@@ -179,7 +183,9 @@ impl<'p> Guards<'p> {
             certified: 0.0,
             flip: f64::INFINITY,
             near: 0.0,
+            touch: false,
             slack: 0.0,
+            settled: false,
             stride: 0.0,
             version: 0,
         };

@@ -286,8 +286,14 @@ impl Engine<'_, '_> {
     pub fn judge_claims(&mut self, concerned: &[u32]) -> Result<(), Failure> {
         for &instance in concerned {
             let Origin::Claim(claim) = self.guards.definition(instance).origin else { continue };
+            if !self.guards.instances[instance as usize].active {
+                continue;
+            }
+            for index in self.guards.atom_range(instance) {
+                self.settle(index, Rule::Rates, &Written::default());
+            }
             let state = &self.guards.instances[instance as usize];
-            if !(state.active && state.armed && self.truths().holds(instance, Side::After)) {
+            if !(state.armed && self.truths().holds(instance, Side::After)) {
                 continue;
             }
             let agent = state.roots[0] as usize;

@@ -185,6 +185,7 @@ impl Engine<'_, '_> {
             truth: state.truth,
             closed: closed(atom.relation, state.truth),
             slack: state.slack,
+            settled: state.settled,
             reach: if blocked { time_resolution(to) } else { 2.0 * ulp(to) },
         };
         let mut curve = AtomCurve::new(&self.agents, atom, &slots, &mut self.curves);
@@ -195,6 +196,7 @@ impl Engine<'_, '_> {
                 let state = &mut self.guards.atoms[index];
                 state.flip = flip.time;
                 state.near = flip.near;
+                state.touch = flip.undecided;
                 state.version += 1;
                 self.queues.flips.push(Due { time: flip.time, number: index as u32, version: state.version });
             }
@@ -206,6 +208,7 @@ impl Engine<'_, '_> {
         let state = &mut self.guards.atoms[index];
         if until > state.certified {
             state.slack = 0.0;
+            state.settled = false;
         }
         state.certified = until;
         state.version += 1;
@@ -407,7 +410,9 @@ impl Engine<'_, '_> {
         state.rooted = true;
         let slack = jet[1].abs() * time_resolution(time);
         self.recertify(index, time);
-        self.guards.atoms[index].slack = if slack.is_finite() { slack } else { 0.0 };
+        let state = &mut self.guards.atoms[index];
+        state.slack = if slack.is_finite() { slack } else { 0.0 };
+        state.settled = !state.touch;
     }
 
     /// A scheduled time of an instance has come: its delay is over, or its period has passed once more.

@@ -29,6 +29,9 @@ pub struct Known {
     pub closed: bool,
     /// How far from zero g may be at the start and count as on the boundary, beyond what the rates there say.
     pub slack: f64,
+    /// Whether the truth has been settled at the start itself, by a root or by the rates there: if it lies on the
+    /// boundary, it is not asked again which way it goes.
+    pub settled: bool,
     /// A root that is due within this time after the end counts as at the end, s.
     pub reach: f64,
 }
@@ -125,6 +128,7 @@ pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_ma
                 Err(flip) => return Search::Flip(flip),
             };
             known_here.slack = 0.0;
+            known_here.settled = false;
         }
         looked_at += 1;
         let middle = 0.5 * (s + e);
@@ -199,6 +203,9 @@ fn enter(f: &mut Turned<'_>, s: f64, known: Known) -> Result<Entry, Flip> {
     let rounding = f.rounding(s);
     if jet[0] > band.max(rounding[0]) {
         return Ok(Entry::Clear);
+    }
+    if known.settled && jet[0] >= -band.max(rounding[0]) {
+        return Ok(Entry::Boundary);
     }
     let flip = Flip { time: s, near: s, undecided: false };
     if jet[0] < -band.max(rounding[0]) {

@@ -2,7 +2,8 @@
 //!
 //! A polynomial is x(t) = sum over k of c_k theta^k with theta = (t - start) / h, where h is the length of the step as
 //! it was taken; an event may have cut the segment to a shorter [start, end]. Bounds over a stretch of time come from
-//! the polynomial moved to the middle of the stretch: x in c_0 ± sum of |c_k| r^k, widened for rounding.
+//! the polynomial moved to the middle of the stretch: x in c_0 ± sum of |c_k| r^k, widened for the rounding of the move,
+//! which is none at the start of the segment.
 
 use crate::math::Interval;
 
@@ -72,35 +73,29 @@ impl Segment {
         let to = (e - self.start) / self.h;
         let middle = 0.5 * (from + to);
         let radius = (0.5 * (to - from)).abs() * (1.0 + 1e-15);
-        let size = middle.abs().max(1.0);
         let mut moved = [0.0; N_MAX];
         for (i, c) in self.coefficients.chunks_exact(n).enumerate() {
             let moved = &mut moved[..n];
             moved.copy_from_slice(c);
-            let rounding = shift(moved, middle, size);
-            let scale = 1.0 / self.h;
-            x[i] = around(moved[0], spread(moved, radius, 0), rounding);
+            shift(moved, middle);
+            let rounding = |order| spread(c, middle.abs(), order) * (8 * n) as f64 * f64::EPSILON;
             let (d, dd) = (moved.get(1).copied().unwrap_or(0.0), moved.get(2).copied().unwrap_or(0.0));
-            dx[i] = around(d * scale, spread(moved, radius, 1) * scale, rounding * scale * n as f64);
-            let rounding = rounding * scale * scale * (n * n) as f64;
-            ddx[i] = around(2.0 * dd * scale * scale, spread(moved, radius, 2) * scale * scale, rounding);
+            let (scale, square) = (1.0 / self.h, 1.0 / (self.h * self.h));
+            x[i] = around(moved[0], spread(moved, radius, 0), rounding(0));
+            dx[i] = around(d * scale, spread(moved, radius, 1) * scale, rounding(1) * scale);
+            ddx[i] = around(2.0 * dd * square, spread(moved, radius, 2) * square, rounding(2) * square);
         }
     }
 }
 
-/// Moves a polynomial's origin to `by` (repeated synthetic division) and bounds the rounding of its coefficients.
-fn shift(c: &mut [f64], by: f64, size: f64) -> f64 {
+/// Moves a polynomial's origin to `by` (repeated synthetic division).
+fn shift(c: &mut [f64], by: f64) {
     let n = c.len();
-    if c[1..].iter().all(|&c| c == 0.0) {
-        return 0.0;
-    }
-    let magnitude = c.iter().rev().fold(0.0, |sum, c| sum * size + c.abs());
     for low in 0..n.saturating_sub(1) {
         for k in (low..n - 1).rev() {
             c[k] += by * c[k + 1];
         }
     }
-    magnitude * (4 * n) as f64 * f64::EPSILON
 }
 
 /// Bounds what the terms above the first of the `order`-th derivative add within `radius` of the origin.
