@@ -167,6 +167,7 @@ impl<'a> Context<'a> {
             }
             Some(Member::Link(_)) => ("a link", "links are set where the agent is made, in `system`"),
             Some(Member::Event) => ("an event", "events are sent by `emit`"),
+            Some(Member::Twice) => return None,
             None if scope.bound.iter().any(|(bound, _)| *bound == name.text) => {
                 ("another agent", "only an `interaction` may write the agents that take part in it")
             }

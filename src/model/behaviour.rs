@@ -38,7 +38,7 @@ impl<'a> Context<'a> {
                     Progress::Done(Meaning::Let(number, _)) => VarRef::Let(number),
                     Progress::Waiting | Progress::Running | Progress::Done(_) => return None,
                 },
-                Member::Event => return None,
+                Member::Event | Member::Twice => return None,
             };
             Some((name.to_string(), variable))
         });
@@ -145,6 +145,7 @@ impl<'a> Context<'a> {
             }
             Some(Member::Link(_)) => ("a link", "only numbers flow"),
             Some(Member::Event) => ("an event", "only numbers flow"),
+            Some(Member::Twice) => return None,
             None => {
                 let similar =
                     closest(&name.text, self.model.types[ty].states.iter().map(|state| state.name.as_str()));
@@ -189,6 +190,11 @@ impl<'a> Context<'a> {
         for state in 0..self.model.types[ty].states.len() {
             let Some(modes) = missing.remove(&state) else { continue };
             let variable = &self.model.types[ty].states[state];
+            let names = &self.agents[ty.index()];
+            let twice = matches!(names.members.get(variable.name.as_str()), Some((Member::Twice, _)));
+            if twice || names.states[state].ty != Ty::Real {
+                continue;
+            }
             let (name, declared) = (variable.name.clone(), variable.span);
             let implicit = self.model.types[ty].modes.len() == 1;
             self.report(ModeError::NoFlow { state: name, declared, modes, implicit });

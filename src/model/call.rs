@@ -209,7 +209,7 @@ impl<'a> Context<'a> {
             QuantifierKind::Nearest => ("nearest", None),
         };
         let Some(kind) = kind else {
-            self.refuse(format!("`{name}` over a set of agents"), span);
+            self.refuse(format!("`{name}` quantifiers"), span);
             return self.wrong(span);
         };
         if let (Some(other), Home::File | Home::Function | Home::Initial(_) | Home::Construction) =

@@ -6,7 +6,7 @@
 use rustc_hash::FxHashMap;
 
 use super::evaluate::Evaluator;
-use super::ir::{self, BinderId, Expr, ExprId, ExprKind, FunctionId, InteractionId, ModeId, Model, TypeId};
+use super::ir::{BinderId, Expr, ExprId, ExprKind, FunctionId, InteractionId, ModeId, Model, TypeId};
 use super::limits;
 use super::operands::for_each_operand;
 use super::types::{Slot, Ty};
@@ -182,6 +182,8 @@ pub(super) enum Member {
     Let(usize),
     /// An event.
     Event,
+    /// Declared twice, which has been reported.
+    Twice,
 }
 
 /// The names of an interaction.
@@ -244,6 +246,8 @@ pub(super) struct Context<'a> {
     pub definitions: Vec<Definition<'a>>,
     /// Those that are being worked on, outermost first.
     pub running: Vec<usize>,
+    /// How deep the expression that is being lowered lies, over the definitions around it.
+    pub depth: usize,
     /// By agent type.
     pub agents: Vec<AgentNames<'a>>,
     /// By interaction.
@@ -272,6 +276,7 @@ impl<'a> Context<'a> {
             globals: FxHashMap::default(),
             definitions: Vec::new(),
             running: Vec::new(),
+            depth: 0,
             agents: Vec::new(),
             pairs: Vec::new(),
             signatures: Vec::new(),
@@ -313,14 +318,6 @@ impl<'a> Context<'a> {
 
     /// Adds an expression.
     pub fn push(&mut self, kind: ExprKind, ty: Ty, span: Span) -> Value {
-        if self.model.exprs.len() >= limits::EXPRESSIONS_MAX {
-            if self.model.exprs.len() == limits::EXPRESSIONS_MAX {
-                self.report(super::error::LimitError::Expressions { span });
-                self.model.exprs.push(Expr { kind: ExprKind::Number(0.0), ty: ir::Type::Real, span });
-                self.facts.push(Facts::default());
-            }
-            return Value { id: ExprId::new(0), ty: Ty::Wrong };
-        }
         let facts = self.facts_of(&kind, ty);
         self.facts.push(facts);
         Value { id: self.model.exprs.push(Expr { kind, ty: ty.ir(), span }), ty }

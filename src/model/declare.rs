@@ -5,67 +5,11 @@ use rustc_hash::FxHashMap;
 use super::context::{
     AgentNames, Body, Context, Definition, Global, GlobalKind, Member, PairNames, Progress,
 };
-use super::error::{ModeError, NameError, TypeError};
+use super::error::{NameError, TypeError};
 use super::ir::{AgentType, Interaction, Link, Mode, ModeId, Type, TypeId, Variable};
-use super::suggest::closest;
 use super::types::{Slot, Ty};
-use super::units::{self, Unit};
 use crate::base::{Arena, Span};
 use crate::syntax::ast::{self, AgentItem, BodyItem, Item, VariableKind};
-
-/// Names that have a meaning of their own and cannot be declared.
-pub(super) const RESERVED: &[&str] = &[
-    "pi",
-    "inf",
-    "true",
-    "false",
-    "none",
-    "time",
-    "self",
-    "index",
-    "sin",
-    "cos",
-    "tan",
-    "asin",
-    "acos",
-    "atan",
-    "atan2",
-    "sinh",
-    "cosh",
-    "tanh",
-    "asinh",
-    "acosh",
-    "atanh",
-    "exp",
-    "log",
-    "log2",
-    "log10",
-    "sqrt",
-    "cbrt",
-    "abs",
-    "sign",
-    "min",
-    "max",
-    "floor",
-    "ceil",
-    "round",
-    "trunc",
-    "mod",
-    "hypot",
-    "clamp",
-    "rising",
-    "crossing",
-    "Uniform",
-    "Normal",
-    "Exponential",
-    "csv",
-    "table",
-    "real",
-    "int",
-    "bool",
-    "string",
-    "history",
-];
 
 /// Declares everything.
 pub(super) fn declare<'a>(context: &mut Context<'a>, file: &'a ast::Ast) {
@@ -111,14 +55,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    fn check_reserved(&mut self, name: &ast::Name) {
-        if RESERVED.contains(&name.text.as_str()) {
-            self.report(NameError::Reserved { name: name.text.clone(), span: name.span });
-        }
-    }
-
     fn declare_global(&mut self, name: &'a ast::Name, kind: GlobalKind) {
-        self.check_reserved(name);
         if let Some(first) = self.globals.get(name.text.as_str()) {
             let first = first.span;
             return self.report(NameError::Taken { name: name.text.clone(), span: name.span, first });
@@ -126,7 +63,8 @@ impl<'a> Context<'a> {
         self.globals.insert(&name.text, Global { kind, span: name.span });
     }
 
-    fn add_definition(&mut self, name: &'a ast::Name, body: Body<'a>) -> usize {
+    /// Adds a definition to be worked out later.
+    pub fn add_definition(&mut self, name: &'a ast::Name, body: Body<'a>) -> usize {
         self.definitions.push(Definition { name, body, progress: Progress::Waiting });
         self.definitions.len() - 1
     }
@@ -217,9 +155,10 @@ impl<'a> Context<'a> {
     }
 
     fn declare_member(&mut self, ty: TypeId, name: &'a ast::Name, member: Member) {
-        self.check_reserved(name);
         let members = &mut self.agents[ty.index()].members;
-        if let Some(&(_, first)) = members.get(name.text.as_str()) {
+        if let Some((earlier, first)) = members.get_mut(name.text.as_str()) {
+            *earlier = Member::Twice;
+            let first = *first;
             return self.report(NameError::Taken { name: name.text.clone(), span: name.span, first });
         }
         members.insert(&name.text, (member, name.span));
@@ -318,104 +257,10 @@ impl<'a> Context<'a> {
         self.declare_member(ty, &item.name, Member::Link(number));
     }
 
-    fn declare_modes(&mut self, ty: TypeId, parent: ModeId, items: impl Iterator<Item = &'a BodyItem>) {
-        let mut initial: Option<(ModeId, Span)> = None;
-        for item in items {
-            let BodyItem::Mode(mode) = item else { continue };
-            let id = self.declare_mode(ty, parent, mode);
-            if let Some(span) = mode.initial {
-                match initial {
-                    Some((_, first)) => {
-                        let owner = self.owner_of_modes(ty, parent);
-                        self.report(ModeError::TwoInitial { owner, span, first });
-                    }
-                    None => initial = Some((id, span)),
-                }
-            }
-        }
-        let first = self.model.types[ty].modes[parent].children.first().copied();
-        if let (Some(first), None) = (first, initial) {
-            let modes = &self.model.types[ty].modes;
-            let (span, example) = (modes[parent].span, modes[first].name.clone());
-            let owner = self.owner_of_modes(ty, parent);
-            self.report(ModeError::NoInitial { owner, span, example });
-        }
-        self.model.types[ty].modes[parent].initial = initial.map(|(id, _)| id).or(first);
-    }
-
-    fn owner_of_modes(&self, ty: TypeId, parent: ModeId) -> String {
-        let mode = &self.model.types[ty].modes[parent];
-        if mode.parent.is_none() { format!("agent `{}`", mode.name) } else { format!("mode `{}`", mode.path) }
-    }
-
-    fn declare_mode(&mut self, ty: TypeId, parent: ModeId, item: &'a ast::Mode) -> ModeId {
-        let modes = &self.model.types[ty].modes;
-        let depth = modes[parent].depth + 1;
-        let outer = &modes[parent].path;
-        let path =
-            if outer.is_empty() { item.name.text.clone() } else { format!("{outer}.{}", item.name.text) };
-        let twin = modes[parent].children.iter().copied().find(|&child| modes[child].name == item.name.text);
-        if let Some(twin) = twin {
-            let first = modes[twin].span;
-            self.report(NameError::Taken { name: path.clone(), span: item.name.span, first });
-        }
-        if depth == 2 {
-            self.refuse("modes inside modes", item.span);
-        }
-        self.check_reserved(&item.name);
-        let id = self.model.types[ty].modes.push(Mode {
-            name: item.name.text.clone(),
-            path,
-            parent: Some(parent),
-            depth,
-            children: Vec::new(),
-            initial: None,
-            flow: Vec::new(),
-            invariants: Vec::new(),
-            asserts: Vec::new(),
-            entry: Vec::new(),
-            exit: Vec::new(),
-            span: item.name.span,
-        });
-        self.model.types[ty].modes[parent].children.push(id);
-        self.agents[ty.index()].modes.push(Some(item));
-        self.agents[ty.index()].mode_lets.push(FxHashMap::default());
-        for part in &item.items {
-            if let BodyItem::Let(item) = part {
-                self.declare_mode_let(ty, id, item);
-            }
-        }
-        self.declare_modes(ty, id, item.items.iter());
-        id
-    }
-
-    fn declare_mode_let(&mut self, ty: TypeId, mode: ModeId, item: &'a ast::Let) {
-        self.check_reserved(&item.name);
-        let name = item.name.text.as_str();
-        let number = self.add_definition(&item.name, Body::AgentLet(ty, mode, item));
-        let names = &self.agents[ty.index()];
-        let mut first = names.members.get(name).map(|(_, span)| *span);
-        let mut around = Some(mode);
-        while let Some(id) = around {
-            let earlier = names.mode_lets[id.index()].get(name);
-            first = earlier.map(|&number| self.definitions[number].name.span).or(first);
-            around = self.model.types[ty].modes[id].parent;
-        }
-        match first {
-            Some(first) => {
-                self.report(NameError::Taken { name: name.to_string(), span: item.name.span, first })
-            }
-            None => {
-                self.agents[ty.index()].mode_lets[mode.index()].insert(name, number);
-            }
-        }
-    }
-
     fn declare_participants(&mut self, number: usize) {
         let item = self.pairs[number].item;
         for part in &item.items {
             let ast::InteractionItem::Let(item) = part else { continue };
-            self.check_reserved(&item.name);
             let definition = self.add_definition(&item.name, Body::PairLet(number, item));
             let lets = &mut self.pairs[number].lets;
             match lets.get(item.name.text.as_str()) {
@@ -456,7 +301,6 @@ impl<'a> Context<'a> {
     }
 
     fn participant_type(&mut self, number: usize, formal: &'a ast::Formal) -> Option<TypeId> {
-        self.check_reserved(&formal.name);
         if let Some(&number) = self.pairs[number].lets.get(formal.name.text.as_str()) {
             let span = self.definitions[number].name.span;
             self.report(NameError::Taken { name: formal.name.text.clone(), span, first: formal.name.span });
@@ -476,63 +320,6 @@ impl<'a> Context<'a> {
             }
         }
         None
-    }
-
-    /// The agent type of this name; none, and a diagnostic, if there is none.
-    pub fn agent_named(&mut self, name: &ast::Name) -> Option<TypeId> {
-        if let Some(Global { kind: GlobalKind::Agent(ty), .. }) = self.globals.get(name.text.as_str()) {
-            return Some(*ty);
-        }
-        if !self.imports {
-            let similar = closest(&name.text, self.model.types.iter().map(|ty| ty.name.as_str()));
-            self.report(NameError::UnknownType { name: name.text.clone(), span: name.span, similar });
-        }
-        None
-    }
-
-    /// A declared type with its unit.
-    pub fn slot(&mut self, item: &ast::TypeName) -> Slot {
-        let ty = match item.name.text.as_str() {
-            "real" => Ty::Real,
-            "int" => Ty::Int,
-            "bool" => Ty::Bool,
-            "string" => Ty::Text,
-            name => match self.globals.get(name) {
-                Some(Global { kind: GlobalKind::Agent(ty), .. }) => Ty::Agent(*ty),
-                _ => {
-                    if !self.imports {
-                        let types = self.model.types.iter().map(|ty| ty.name.as_str());
-                        let similar = closest(name, types.chain(["real", "int", "bool", "string"]));
-                        let (name, span) = (name.to_string(), item.name.span);
-                        self.report(NameError::UnknownType { name, span, similar });
-                    }
-                    Ty::Wrong
-                }
-            },
-        };
-        let Some(text) = &item.unit else { return Slot::plain(ty) };
-        if !matches!(ty, Ty::Real | Ty::Wrong) {
-            self.report(TypeError::UnitOnType { ty: item.name.text.clone(), span: text.span });
-        }
-        Slot { ty, unit: self.unit(text) }
-    }
-
-    /// A unit; one, and a diagnostic, if the text is none.
-    pub fn unit(&mut self, item: &ast::UnitText) -> Unit {
-        units::parse(&item.text).unwrap_or_else(|problem| {
-            self.report(TypeError::Unit { problem, span: item.span });
-            Unit::ONE
-        })
-    }
-
-    /// Refuses a text where only parameters of the file may be one.
-    pub fn no_text(&mut self, slot: Slot, what: &'static str, span: Span) -> Slot {
-        if slot.ty != Ty::Text {
-            return slot;
-        }
-        let help = "only a `param` of the file can be a `string`";
-        self.report(TypeError::NotAllowed { what, found: "a text".to_string(), span, help });
-        Slot::plain(Ty::Wrong)
     }
 }
 

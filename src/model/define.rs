@@ -6,7 +6,7 @@
 use rustc_hash::FxHashMap;
 
 use super::context::{Body, Context, Home, Meaning, Progress, Scope, Signature, Value};
-use super::error::{LimitError, NameError, TypeError, ValueError};
+use super::error::{NameError, TypeError, ValueError};
 use super::ir::{Function, Let, ModeId, Param, ParamValue, TypeId};
 use super::limits;
 use super::mentions::names_in;
@@ -54,13 +54,9 @@ impl<'a> Context<'a> {
             }
             Progress::Waiting => {}
         }
-        if self.running.len() >= limits::WAITING_MAX {
-            let name = self.definitions[number].name;
-            self.report(LimitError::Waiting { name: name.text.clone(), span: name.span });
-            return Meaning::Failed;
-        }
         self.definitions[number].progress = Progress::Running;
         self.running.push(number);
+        self.depth += limits::DEPTH_OF_DEFINITION;
         let meaning = match self.definitions[number].body {
             Body::Param(item) => self.define_param(item),
             Body::Let(item) => self.define_let(item),
@@ -69,6 +65,7 @@ impl<'a> Context<'a> {
             Body::PairLet(pair, item) => self.define_pair_let(pair, item),
         };
         self.running.pop();
+        self.depth -= limits::DEPTH_OF_DEFINITION;
         self.definitions[number].progress = Progress::Done(meaning);
         meaning
     }

@@ -36,9 +36,14 @@ enum Task {
 }
 
 impl Evaluator {
-    /// A machine with a budget of operations for its whole life.
+    /// A machine with a budget of operations.
     pub fn new(steps: u64) -> Self {
         Self { steps_left: steps, work: Vec::new(), values: Vec::new(), locals: Vec::new() }
+    }
+
+    /// Adds to the budget.
+    pub fn grant(&mut self, steps: u64) {
+        self.steps_left = self.steps_left.saturating_add(steps);
     }
 
     /// The value of an expression that reads nothing but numbers, `index` and the agent's own initial data; none if the

@@ -4,8 +4,9 @@
 //! reported once and becomes a value of type [`Ty::Wrong`], which goes with everything.
 
 use super::context::{Context, Scope, Value};
-use super::error::TypeError;
+use super::error::{LimitError, TypeError};
 use super::ir::ExprKind;
+use super::limits;
 use super::types::{Slot, Ty};
 use crate::base::Span;
 use crate::math::Op;
@@ -14,6 +15,17 @@ use crate::syntax::ast::{self, CompareOp, ProductOp, SumOp, UnaryOp};
 impl<'a> Context<'a> {
     /// Checks an expression and adds it to the product.
     pub fn lower(&mut self, scope: &mut Scope<'a>, expr: &'a ast::Expr) -> Value {
+        if self.depth > limits::DEPTH_MAX {
+            self.report(LimitError::Depth { span: expr.span });
+            return self.wrong(expr.span);
+        }
+        self.depth += 1;
+        let value = self.lower_kind(scope, expr);
+        self.depth -= 1;
+        value
+    }
+
+    fn lower_kind(&mut self, scope: &mut Scope<'a>, expr: &'a ast::Expr) -> Value {
         let span = expr.span;
         match &expr.kind {
             ast::ExprKind::Number { value, text, unit } => {
@@ -90,7 +102,7 @@ impl<'a> Context<'a> {
         } else {
             let help = matches!((want, value.ty), (Ty::Agent(wanted), Ty::Link(found)) if wanted == found)
                 .then(|| "declare a `link` instead, which may be none".to_string());
-            let (expected, found) = (self.describe(want), self.describe(value.ty));
+            let (expected, found) = (want.describe_needed(&self.model.types), self.describe(value.ty));
             self.report(TypeError::Mismatch { what, expected, found, span, help });
         }
         Value { ty: Ty::Wrong, ..value }
@@ -321,7 +333,7 @@ impl<'a> Context<'a> {
                 self.push(ExprKind::Same(a.id, b.id), Ty::Bool, span)
             }
             (x, y) => {
-                let (expected, found) = (self.describe(x), self.describe(y));
+                let (expected, found) = (x.describe_needed(&self.model.types), self.describe(y));
                 let what = format!("the right side of `{}`", comparison_name(op));
                 let expected = format!("{expected}, as the left one");
                 self.report(TypeError::Mismatch { what, expected, found, span: right.span, help: None });

@@ -4,14 +4,17 @@
 /// How many agents there may be at t = 0.
 pub const AGENTS_MAX: usize = 10_000_000;
 
-/// How many operations all constants and initial values together may take.
-pub const STEPS_MAX: u64 = 500_000_000;
+/// How many operations all constants together may take.
+pub const STEPS_MAX: u64 = 50_000_000;
 
-/// How many expressions a model may have.
-pub const EXPRESSIONS_MAX: usize = 20_000_000;
+/// How many operations the initial values of an agent may take, on average.
+pub const STEPS_PER_AGENT_MAX: u64 = 1_000;
 
-/// How many definitions may wait for each other while one is looked up through another agent's.
-pub const WAITING_MAX: usize = 64;
+/// How deep expressions may nest, over definitions that are looked up inside others; one expression alone stays below it.
+pub const DEPTH_MAX: usize = 1_600;
+
+/// What a definition that is looked up inside another counts in [`DEPTH_MAX`].
+pub const DEPTH_OF_DEFINITION: usize = 8;
 
 /// How many branches an `if ... else if ...` among actions may have.
 pub const BRANCHES_MAX: usize = 256;

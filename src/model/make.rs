@@ -5,6 +5,7 @@ use super::error::{LimitError, SystemError, ValueError};
 use super::evaluate::Known;
 use super::initial::Initials;
 use super::ir::{Block, ExprId, Instance, Type, VarRef, Variable};
+use super::limits;
 use super::plan::{Plan, Reference, Source};
 use crate::base::Diagnostic;
 
@@ -14,6 +15,7 @@ impl<'a> Context<'a> {
         let blocks = std::mem::take(&mut self.model.population.blocks);
         let total = blocks.iter().map(|block| block.count).sum();
         let mut agents = Vec::with_capacity(total);
+        self.evaluator.grant(limits::STEPS_PER_AGENT_MAX.saturating_mul(total as u64));
         for (block, plan) in blocks.iter().zip(plans) {
             let order = &initials[plan.ty.index()].order;
             for index in 0..block.count {

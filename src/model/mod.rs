@@ -16,6 +16,8 @@ mod order;
 mod mentions;
 mod evaluate;
 mod context;
+mod slot;
+mod modes;
 mod declare;
 mod expression;
 mod resolve;

@@ -35,6 +35,8 @@ pub(super) struct Plan<'a> {
     pub links: Vec<Option<Reference>>,
     /// The columns that are read, row by row.
     pub columns: Vec<Vec<f64>>,
+    /// What unknown arguments and columns were perhaps meant to be; these are not missing.
+    pub misspelt: Vec<String>,
 }
 
 /// An agent of `system`, depending on `index`.

@@ -3,6 +3,8 @@
 //! Every block is planned first: where each of its values comes from, how many agents it has. Only then is anything
 //! made, so that a block may refer to one behind it, and a count beyond the limit costs no memory.
 
+use std::io::ErrorKind;
+
 use rustc_hash::FxHashMap;
 
 use super::Files;
@@ -71,6 +73,7 @@ impl<'a> Context<'a> {
             discretes: missing(&names.discretes),
             links: self.model.types[ty].links.iter().map(|_| None).collect(),
             columns: Vec::new(),
+            misspelt: Vec::new(),
         };
         let given = self.plan_arguments(&mut plan);
         let data = constructor.source.as_ref().map(|source| self.open(source, files, opened));
@@ -137,9 +140,10 @@ impl<'a> Context<'a> {
                 Some(Member::Param(number)) => (names.params[number], &mut plan.params[number]),
                 Some(Member::State(number)) => (names.states[number], &mut plan.states[number]),
                 Some(Member::Discrete(number)) => (names.discretes[number], &mut plan.discretes[number]),
-                Some(Member::Link(_)) => continue,
+                Some(Member::Link(_) | Member::Twice) => continue,
                 Some(Member::Let(_) | Member::Event) | None => {
-                    self.unknown_argument(plan.ty, &arg.name, matches!(member, Some(Member::Let(_))));
+                    let is_let = matches!(member, Some(Member::Let(_)));
+                    plan.misspelt.extend(self.unknown_argument(plan.ty, &arg.name, is_let));
                     continue;
                 }
             };
@@ -157,11 +161,12 @@ impl<'a> Context<'a> {
         given
     }
 
-    fn unknown_argument(&mut self, ty: TypeId, name: &ast::Name, is_let: bool) {
+    fn unknown_argument(&mut self, ty: TypeId, name: &ast::Name, is_let: bool) -> Option<String> {
         let similar = closest(&name.text, self.agents[ty.index()].members.keys().copied());
         let agent = self.model.types[ty].name.clone();
         let (name, span) = (name.text.clone(), name.span);
-        self.report(SystemError::UnknownArgument { name, agent, span, similar, is_let });
+        self.report(SystemError::UnknownArgument { name, agent, span, similar: similar.clone(), is_let });
+        similar
     }
 
     /// The file behind `from csv(...)`; none, and a diagnostic, if it cannot be used.
@@ -204,11 +209,7 @@ impl<'a> Context<'a> {
                     file
                 }
                 Err(error) => {
-                    self.report(FileError::Unreadable {
-                        path: name,
-                        why: error.to_string(),
-                        span: path.span,
-                    });
+                    self.report(FileError::Unreadable { path: name, why: reason(&error), span: path.span });
                     return None;
                 }
             },
@@ -235,9 +236,10 @@ impl<'a> Context<'a> {
                 Some(Member::Param(number)) => (names.params[number], &mut plan.params[number]),
                 Some(Member::State(number)) => (names.states[number], &mut plan.states[number]),
                 Some(Member::Discrete(number)) => (names.discretes[number], &mut plan.discretes[number]),
+                Some(Member::Twice) => continue,
                 Some(Member::Link(_) | Member::Let(_) | Member::Event) | None => {
                     if !(name.starts_with('_') || name == "i" || name == "index") {
-                        self.unknown_column(plan.ty, name, *span, data.used);
+                        plan.misspelt.extend(self.unknown_column(plan.ty, name, *span, data.used));
                     }
                     continue;
                 }
@@ -252,12 +254,14 @@ impl<'a> Context<'a> {
         wanted
     }
 
-    fn unknown_column(&mut self, ty: TypeId, name: &str, span: Span, used: Span) {
+    fn unknown_column(&mut self, ty: TypeId, name: &str, span: Span, used: Span) -> Option<String> {
         let model = &self.model.types[ty];
         let variables = model.params.iter().chain(&model.states).chain(&model.discretes);
         let similar = closest(name, variables.map(|variable| variable.name.as_str()));
         let agent = model.name.clone();
-        self.report(FileError::UnknownColumn { name: name.to_string(), agent, span, similar, used });
+        let name = name.to_string();
+        self.report(FileError::UnknownColumn { name, agent, span, similar: similar.clone(), used });
+        similar
     }
 
     /// What neither an argument nor a column gives comes from the agent type, or is missing.
@@ -284,8 +288,9 @@ impl<'a> Context<'a> {
             model.links.iter().filter(|link| link.required && !given.contains_key(link.name.as_str()));
         missing.extend(unlinked.map(|link| ("parameter", link.name.clone(), link.span)));
         for (kind, name, declared) in missing {
-            let with_text = self.declared_with_value(plan.ty, &name);
-            if !with_text {
+            let twice =
+                matches!(self.agents[plan.ty.index()].members.get(name.as_str()), Some((Member::Twice, _)));
+            if !twice && !plan.misspelt.contains(&name) && !self.declared_with_value(plan.ty, &name) {
                 let agent = self.model.types[plan.ty].name.clone();
                 self.report(SystemError::Missing {
                     kind,
@@ -366,5 +371,13 @@ impl<'a> Context<'a> {
                 count
             }
         }
+    }
+}
+
+/// Why a file cannot be read, in the same words everywhere.
+fn reason(error: &std::io::Error) -> String {
+    match error.kind() {
+        ErrorKind::NotFound => "there is no such file".to_string(),
+        _ => error.to_string(),
     }
 }

@@ -213,6 +213,7 @@ impl<'a> Context<'a> {
                 Meaning::Let(number, ty) => (ExprKind::Let(agent.id, number), ty),
                 _ => return self.wrong(span),
             },
+            Member::Twice => return self.wrong(span),
             Member::Event => {
                 let help = "events are sent by `emit` and received by `on`";
                 self.report(NameError::NotAValue { name: name.to_string(), what: "an event", span, help });

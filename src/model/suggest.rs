@@ -1,15 +1,25 @@
 //! "Did you mean": the known name that is closest to a mistyped one.
 
-/// The closest of the candidates, if it is close enough to be what was meant; ties go to the first in the alphabet.
+use std::cmp::Reverse;
+
+/// The closest of the candidates, if it is close enough to be what was meant; of two the one that begins alike,
+/// then the first in the alphabet.
 pub(super) fn closest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<String> {
     let allowed = (name.chars().count() / 3).max(1);
     candidates
         .into_iter()
         .filter(|candidate| *candidate != name)
-        .map(|candidate| (distance(name, candidate), candidate))
-        .filter(|(distance, candidate)| *distance <= allowed && *distance < candidate.chars().count().max(1))
+        .map(|candidate| (distance(name, candidate), Reverse(begin_alike(name, candidate)), candidate))
+        .filter(|(distance, _, candidate)| {
+            *distance <= allowed && *distance < candidate.chars().count().max(1)
+        })
         .min()
-        .map(|(_, candidate)| candidate.to_string())
+        .map(|(_, _, candidate)| candidate.to_string())
+}
+
+/// How many letters two names share at their beginning.
+fn begin_alike(name: &str, candidate: &str) -> usize {
+    name.chars().zip(candidate.chars()).take_while(|(a, b)| a == b).count()
 }
 
 /// Edits between two names; letters that differ in case only count as equal.
@@ -26,6 +36,7 @@ mod tests {
     fn only_near_names_are_suggested() {
         assert_eq!(closest("raod", ["road", "len", "lanes"]), Some("road".to_string()));
         assert_eq!(closest("car", ["Car", "cars"]), Some("Car".to_string()));
+        assert_eq!(closest("sinn", ["sign", "sin"]), Some("sin".to_string()));
         assert_eq!(closest("z", ["x", "y"]), None);
         assert_eq!(closest("velocity", ["v", "x"]), None);
     }

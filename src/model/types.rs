@@ -55,6 +55,11 @@ impl Ty {
         }
     }
 
+    /// In words, as something that is needed.
+    pub fn describe_needed(self, types: &Arena<AgentType>) -> String {
+        if self == Ty::Bool { "true or false".to_string() } else { self.describe(types) }
+    }
+
     /// In words, with its article.
     pub fn describe(self, types: &Arena<AgentType>) -> String {
         match self {

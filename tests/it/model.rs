@@ -60,3 +60,96 @@ fn every_model_comes_to_what_its_snapshot_says() {
         });
     }
 }
+
+#[test]
+fn the_core_of_the_language_comes_to_what_its_snapshot_says() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/it/model");
+    let text = std::fs::read_to_string(folder.join("core.hy")).expect("readable");
+    let mut settings = settings_of("// -p n=3 -p top=36");
+    settings.until = Some(5.0);
+    let model = dump_of("core.hy", &text, &folder, &settings);
+    insta::with_settings!({ snapshot_path => "model", prepend_module_to_snapshot => false, omit_expression => true }, {
+        insta::assert_snapshot!("core", model);
+    });
+}
+
+/// The model of a text that is right, and names no files.
+fn model_of(text: &str) -> hyc::model::Model {
+    let (checked, sources) = check_text("model.hy", text, Path::new("."), &Settings::default());
+    checked.model.unwrap_or_else(|| panic!("{}", render(&sources, &checked.diagnostics, Colours::None)))
+}
+
+#[test]
+fn long_chains_and_deep_nesting_are_no_problem() {
+    let n = 20_000;
+    let chain = |start: &str, link: &str| format!("{start}{}", link.repeat(n));
+    let chains = [chain("x", " + 2*x"), chain("if lead", " and lead.x > 3") + " then lead.x else 0"];
+    for rate in chains {
+        let text =
+            format!("agent C {{ state x = 0 link lead: C flow {{ x' = {rate} }} }} system {{ c = C() }}");
+        assert!(dump(&model_of(&text)).len() > n);
+    }
+    let lets = (0..n).map(|k| format!("let a{k} = a{} + 1 ", k + 1)).collect::<String>();
+    model_of(&format!("{lets} let a{n} = 1"));
+    model_of(&format!("agent C {{ {lets} let a{n} = time }}"));
+    for (open, close) in [("-", ""), ("2^", ""), ("if true then 1 + 2*", " else 1"), ("1 + sin(", ")")] {
+        model_of(&format!("agent C {{ let a = {}1{} }}", open.repeat(250), close.repeat(250)));
+    }
+}
+
+#[test]
+fn shared_definitions_are_not_multiplied() {
+    let lets = (1..100).map(|k| format!("let d{k} = d{0} + d{0} ", k - 1)).collect::<String>();
+    let text = format!(
+        "agent C {{ state x = 0 flow {{ x' = 1 }} }}
+         interaction I(a: C, b: C) {{ let d0 = a.x {lets} when d99 > 1 {{ a.x := d99 }} }}"
+    );
+    assert!(dump(&model_of(&text)).len() < 10_000);
+}
+
+#[test]
+fn a_hundred_thousand_agents_refer_to_each_other() {
+    let model = model_of(
+        "agent C(v: real) { state x = 2*v + index link lead: C flow { x' = 1 } }
+         system { c = C[100000](v = index^2, lead = c[mod(index + 1, 100000)]) }",
+    );
+    assert_eq!(model.population.agents.len(), 100_000);
+    let last = &model.population.agents[99_999];
+    assert_eq!((last.states[0], last.links[0]), (2.0 * 99_999.0 * 99_999.0 + 99_999.0, Some(0)));
+}
+
+/// The settings that the first line of a case names: `// -p N=3 --tolerance 0`.
+fn settings_of(text: &str) -> Settings {
+    let mut settings = Settings::default();
+    let line = text.lines().next().and_then(|line| line.strip_prefix("// -")).unwrap_or("");
+    let line = format!("-{line}");
+    let mut words = line.split_whitespace();
+    while let (Some(flag), Some(value)) = (words.next(), words.next()) {
+        match flag {
+            "-p" => {
+                let (name, value) = value.split_once('=').expect("NAME=VALUE");
+                settings.params.push((name.to_string(), value.to_string()));
+            }
+            "--tolerance" => settings.tolerance = Some(value.parse().expect("a number")),
+            other => panic!("{other} is not known to this test"),
+        }
+    }
+    settings
+}
+
+fn errors() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/it/errors")
+}
+
+#[test]
+fn every_wrong_model_is_told_what_its_snapshot_says() {
+    for (name, text) in texts_in(&errors()).into_iter().filter(|(name, _)| name.starts_with("HY02")) {
+        let (checked, sources) = check_text(&name, &text, &errors(), &settings_of(&text));
+        assert!(checked.model.is_none(), "{name} is wrong");
+        let told = render(&sources, &checked.diagnostics, Colours::None);
+        assert!(told.contains(&name[..6]), "{name} shows another code:\n{told}");
+        insta::with_settings!({ snapshot_path => "errors", prepend_module_to_snapshot => false, omit_expression => true }, {
+            insta::assert_snapshot!(name.replace(".hy", ""), told);
+        });
+    }
+}

@@ -197,10 +197,8 @@ pub(in crate::model) enum LimitError {
     Agents { count: f64, most: usize, span: Span },
     /// Constants that take too long.
     Steps { span: Span },
-    /// More expressions than the limit.
-    Expressions { span: Span },
-    /// Definitions that wait for each other through many agents.
-    Waiting { name: String, span: Span },
+    /// Definitions that are looked up inside each other, many deep.
+    Depth { span: Span },
 }
 
 impl From<LimitError> for Diagnostic {
@@ -215,13 +213,10 @@ impl From<LimitError> for Diagnostic {
                     .label(span, "gave up here")
                     .help("functions that call each other twice or more double the work at every level")
             }
-            LimitError::Expressions { span } => {
-                Diagnostic::error("HY0293", "the model has too many expressions").label(span, "the first one too many")
-            }
-            LimitError::Waiting { name, span } => {
-                Diagnostic::error("HY0294", format!("`{name}` is defined through too many other definitions"))
+            LimitError::Depth { span } => {
+                Diagnostic::error("HY0294", "this is defined through too many other definitions")
                     .label(span, "gave up here")
-                    .help("declare the types of some of them, or define those that are read before those that read them")
+                    .help("split the definition, or define what is read before what reads it")
             }
         }
     }

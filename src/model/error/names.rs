@@ -15,8 +15,6 @@ pub(in crate::model) enum NameError {
     UnknownMode { name: String, inside: String, span: Span, similar: Option<String> },
     /// Declared twice in one scope.
     Taken { name: String, span: Span, first: Span },
-    /// A word of the language.
-    Reserved { name: String, span: Span },
     /// Definitions that need each other.
     Circle { names: Vec<(String, Span)>, what: &'static str },
     /// Functions that call each other.
@@ -67,11 +65,6 @@ impl From<NameError> for Diagnostic {
                     .label(first, "first declared here")
                     .help("give one of them another name")
             }
-            NameError::Reserved { name, span } => {
-                Diagnostic::error("HY0206", format!("`{name}` is a word of the language"))
-                    .label(span, "cannot be declared")
-                    .help(format!("choose another name, for instance `{name}_`"))
-            }
             NameError::Circle { names, what } => {
                 circle("HY0207", what, &names).help("one of them must be defined without the others")
             }
@@ -107,8 +100,10 @@ impl From<NameError> for Diagnostic {
     }
 }
 
-/// A circle of names; the labels are the places of the declarations, the note repeats the first name at the end.
+/// A circle of names, from the one that is declared first; the labels are the places of the declarations.
 fn circle(code: &'static str, title: &str, names: &[(String, Span)]) -> Diagnostic {
+    let first = (0..names.len()).min_by_key(|&k| names[k].1).unwrap_or(0);
+    let names = [&names[first..], &names[..first]].concat();
     let path = names.iter().chain(names.first()).map(|(name, _)| name.as_str()).collect::<Vec<_>>();
     let diagnostic = Diagnostic::error(code, format!("{title}: {}", path.join(" -> ")));
     names.iter().enumerate().fold(diagnostic, |diagnostic, (k, (name, span))| {

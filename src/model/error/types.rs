@@ -58,8 +58,10 @@ impl From<TypeError> for Diagnostic {
             }
             TypeError::EqualReals { span, left, right } => {
                 let short = left.len() + right.len() <= 60 && !left.contains('\n') && !right.contains('\n');
+                let simple = right.chars().all(|c| c.is_alphanumeric() || matches!(c, '.' | '_'));
+                let right = if simple { right } else { format!("({right})") };
                 let example =
-                    if short { format!("`crossing({left} - ({right}))`") } else { "`crossing(a - b)`".to_string() };
+                    if short { format!("`crossing({left} - {right})`") } else { "`crossing(a - b)`".to_string() };
                 Diagnostic::error("HY0224", "real numbers that change continuously are never compared by `==` or `!=`")
                     .label(span, "true at isolated instants, if at all")
                     .help(format!("for the instant at which they meet write {example} in a guard"))
@@ -69,7 +71,11 @@ impl From<TypeError> for Diagnostic {
             }
             TypeError::Arguments { function, least, most, found, span } => {
                 let count = |n: usize| if n == 1 { "1 argument".to_string() } else { format!("{n} arguments") };
-                let takes = if least == most { count(most) } else { format!("{least} to {}", count(most)) };
+                let takes = match most - least {
+                    0 => count(most),
+                    1 => format!("{least} or {}", count(most)),
+                    _ => format!("{least} to {}", count(most)),
+                };
                 Diagnostic::error("HY0226", format!("`{function}` takes {takes}"))
                     .label(span, format!("{} given", count(found)))
             }

@@ -1,0 +1,3 @@
+agent Car { }
+system { a = Car() }
+system { b = Car() }

@@ -1,0 +1,1 @@
+fn f(a: real = 1, b: real) = a + b

@@ -1,0 +1,1 @@
+agent Car { state x = 0 flow { x' = x.speed } }

@@ -1,0 +1,1 @@
+param n: int [m] = 3

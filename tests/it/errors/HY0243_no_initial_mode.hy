@@ -1,0 +1,1 @@
+agent Car { mode Go { } mode Stop { } }

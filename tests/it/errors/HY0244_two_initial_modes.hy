@@ -1,0 +1,1 @@
+agent Car { initial mode Go { } initial mode Stop { } }

@@ -1,0 +1,1 @@
+agent Car { every 0 [ms] { } after -1 { } }

@@ -1,0 +1,3 @@
+param N = 2.5
+agent Car { }
+system { a = Car[N] b = Car[-1] }

@@ -1,0 +1,6 @@
+agent Car(v: real, lane: int) { }
+agent Van(lit: bool) { }
+system { a = Car[] from csv("text.csv")
+         b = Car[] from csv("short.csv")
+         c = Car[] from csv("half.csv")
+         d = Van[] from csv("truth.csv") }

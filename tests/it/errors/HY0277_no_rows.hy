@@ -1,0 +1,2 @@
+agent Car(v: real) { }
+system { cars = Car[](v = 1) }

@@ -1,0 +1,2 @@
+import "other.hy"
+property p = always time >= 0
