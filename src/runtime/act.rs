@@ -1,5 +1,7 @@
 //! Actions: what transitions would write is computed on the rows before; then it is written.
 
+use rustc_hash::{FxHashMap, FxHashSet};
+
 use crate::base::Span;
 use crate::codegen::program::{ActionList, ActionStep, Layout, Target, TransitionSystem};
 use crate::runtime::advance::cut;
@@ -51,9 +53,9 @@ pub struct Effect {
 #[derive(Clone, Debug, Default)]
 pub struct Written {
     /// Agents of which a column was written, with their states and columns before.
-    pub before: Vec<(usize, Vec<f64>, Vec<f64>)>,
+    pub before: FxHashMap<usize, (Vec<f64>, Vec<f64>)>,
     /// Agents whose future has changed: written ones and those in a group or on an input with them.
-    pub restarted: Vec<usize>,
+    pub restarted: FxHashSet<usize>,
     /// Changes of mode.
     pub moves: Vec<Move>,
 }
@@ -186,7 +188,7 @@ impl Engine<'_, '_> {
             }
         }
         self.regroup(&mut written);
-        self.set_locks(&written.restarted);
+        self.set_locks(written.restarted.iter().copied());
         Ok(written)
     }
 
@@ -242,12 +244,12 @@ impl Engine<'_, '_> {
 
     /// Keeps an agent's rows as they were before this micro-step.
     fn remember(&mut self, agent: usize, written: &mut Written) {
-        if written.before.iter().any(|(other, _, _)| *other == agent) {
+        if written.before.contains_key(&agent) {
             return;
         }
         self.present.make(&self.agents, &[agent], Depth::States);
         let aux = self.agents.agents[agent].aux.clone();
-        written.before.push((agent, self.present.states(agent).to_vec(), aux));
+        written.before.insert(agent, (self.present.states(agent).to_vec(), aux));
     }
 
     /// Ends the past of an agent's group here: its segments are cut, its next step begins afresh.
@@ -262,7 +264,7 @@ impl Engine<'_, '_> {
             self.n_cuts += group.members.len() as u64;
         }
         cut(&mut self.agents, group, time);
-        written.restarted.extend_from_slice(&group.members);
+        written.restarted.extend(group.members.iter().copied());
         self.queue_clock(number);
     }
 
@@ -313,7 +315,7 @@ impl Engine<'_, '_> {
             self.restart(agent, written);
         }
         let time = self.present.time;
-        let mut steps: rustc_hash::FxHashMap<usize, Option<f64>> = rustc_hash::FxHashMap::default();
+        let mut steps: FxHashMap<usize, Option<f64>> = FxHashMap::default();
         for &agent in &members {
             steps.insert(agent, self.groups.groups[self.agents.agents[agent].group].h);
         }
@@ -329,9 +331,9 @@ impl Engine<'_, '_> {
     }
 
     /// Sets the locks of the kinks of these agents' flows from their states.
-    pub fn set_locks(&mut self, agents: &[usize]) {
+    pub fn set_locks(&mut self, agents: impl IntoIterator<Item = usize>) {
         self.present.forget();
-        for &agent in agents {
+        for agent in agents {
             let flow = self.agents.flow(agent);
             for kink in &flow.kinks {
                 let slots = self.agents.slots(&flow.frame, &[agent]);

@@ -1,6 +1,6 @@
 //! Arming, settling and waking (rules 2, 3 and 14): which guards look at the present instant afresh, and what they find.
 
-use smallvec::SmallVec;
+use rustc_hash::FxHashSet;
 
 use crate::codegen::kernel::{AgentBox, AgentView, Kernel};
 use crate::codegen::program::{Relation, Trigger};
@@ -10,7 +10,7 @@ use crate::runtime::engine::{Due, Engine};
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::guards::{Origin, closed, inside};
 use crate::runtime::population::{ABSENT, Slots};
-use crate::runtime::present::Depth;
+use crate::runtime::present::{Boxes, Depth};
 use crate::runtime::solve::{time_resolution, ulp};
 use crate::runtime::truth::{self, Side, Truths};
 
@@ -126,6 +126,9 @@ impl<'p> Engine<'p, '_> {
         } else if unchanged && before.rooted && before.certified == time {
             touched = before.touched;
             before.truth
+        } else if unchanged && before.slack == 0.0 {
+            // Off its boundary, and nothing that it reads has changed: only its rates have.
+            before.truth
         } else {
             let rounding = self.rounding(kernel, &slots);
             let clear = g.abs() > if unchanged { before.slack.max(rounding) } else { rounding };
@@ -148,7 +151,7 @@ impl<'p> Engine<'p, '_> {
         state.touched = touched;
         state.rooted = rule == Rule::Woken && before.rooted && unchanged;
         self.recertify(index, time);
-        self.guards.atoms[index].settled = true;
+        self.guards.atoms[index].settled = !(unchanged && before.slack == 0.0);
     }
 
     /// Has an atom certified from `time` on; what was found beyond is void.
@@ -199,25 +202,30 @@ impl<'p> Engine<'p, '_> {
     /// The outputs of a kernel with the present rows as intervals without width.
     fn point_range(&mut self, kernel: &Kernel, slots: &Slots, out: &mut [Interval]) {
         let views = self.present.views(&self.agents, slots);
-        let points =
-            |row: &[f64]| row.iter().map(|&v| Interval { lo: v, hi: v }).collect::<SmallVec<[Interval; 8]>>();
-        let rows: SmallVec<[[SmallVec<[Interval; 8]>; 3]; 4]> = views
+        self.points.clear();
+        for view in &views {
+            for row in [view.states, view.rates, view.accelerations] {
+                self.points.extend(row.iter().map(|&v| Interval { lo: v, hi: v }));
+            }
+        }
+        let mut rest = self.points.as_slice();
+        let mut take = |row: &[f64]| {
+            let (row, after) = rest.split_at(row.len());
+            rest = after;
+            row
+        };
+        let boxes: Boxes<'_> = views
             .iter()
-            .map(|view| [points(view.states), points(view.rates), points(view.accelerations)])
-            .collect();
-        let boxes: SmallVec<[AgentBox<'_>; 6]> = rows
-            .iter()
-            .zip(&views)
-            .map(|(rows, view)| AgentBox {
-                states: &rows[0],
-                rates: &rows[1],
-                accelerations: &rows[2],
+            .map(|view| AgentBox {
+                states: take(view.states),
+                rates: take(view.rates),
+                accelerations: take(view.accelerations),
                 aux: view.aux,
             })
             .collect();
         let time = Interval { lo: self.present.time, hi: self.present.time };
-        let mut registers = Vec::new();
-        kernel.range(&boxes, time, &mut registers, out);
+        self.curves.ranges += 1;
+        kernel.range(&boxes, time, &mut self.registers, out);
     }
 
     /// The value of a kernel on the rows before the micro-step; none if a rate would be needed.
@@ -227,7 +235,7 @@ impl<'p> Engine<'p, '_> {
         }
         let mut views = self.present.views(&self.agents, slots);
         for (view, &agent) in views.iter_mut().zip(slots) {
-            if let Some((_, states, aux)) = written.before.iter().find(|(other, _, _)| *other == agent) {
+            if let Some((states, aux)) = written.before.get(&agent) {
                 *view = AgentView { states, rates: &[], accelerations: &[], aux };
             }
         }
@@ -239,7 +247,7 @@ impl<'p> Engine<'p, '_> {
     /// Follows up what a micro-step wrote: arms and disarms, settles what reads a written agent, has recertified what
     /// reads a restarted one. Returns the instances that may now fire, rising.
     pub fn wake(&mut self, written: &Written) -> Result<Vec<u32>, Failure> {
-        let mut armed: Vec<u32> = Vec::new();
+        let mut armed: FxHashSet<u32> = FxHashSet::default();
         for change in &written.moves {
             for instance in self.guards.of_agent[change.agent].clone() {
                 let definition = self.guards.definition(instance);
@@ -248,17 +256,17 @@ impl<'p> Engine<'p, '_> {
                 }
                 if change.entered.contains(&definition.mode) {
                     self.arm(instance, Rule::Rates)?;
-                    armed.push(instance);
+                    armed.insert(instance);
                 } else if change.left.contains(&definition.mode) {
                     self.disarm(instance);
                 }
             }
         }
-        let is_written = |agent: usize| written.before.iter().any(|(other, _, _)| *other == agent);
-        let mut concerned: Vec<usize> = written.before.iter().map(|(agent, _, _)| *agent).collect();
-        concerned.extend_from_slice(&written.restarted);
+        let mut concerned: Vec<usize> = written.before.keys().chain(&written.restarted).copied().collect();
         concerned.sort_unstable();
         concerned.dedup();
+        let is_written = |agent: usize| written.before.contains_key(&agent);
+        let is_concerned = |agent: usize| is_written(agent) || written.restarted.contains(&agent);
         let mut woken = Vec::new();
         for instance in self.reading(&concerned) {
             if !self.guards.instances[instance as usize].active {
@@ -267,10 +275,10 @@ impl<'p> Engine<'p, '_> {
             let fresh = armed.contains(&instance);
             for index in self.guards.atom_range(instance) {
                 let (atom, slots) = self.guards.atom_slots(&self.agents, index);
-                let read = |agent: usize| atom.slots.iter().any(|&slot| slots[slot] == agent);
-                if !fresh && concerned.iter().any(|&agent| is_written(agent) && read(agent)) {
+                let mut read = atom.slots.iter().map(|&slot| slots[slot]);
+                if !fresh && read.clone().any(is_written) {
                     self.settle(index, Rule::Woken, written);
-                } else if concerned.iter().any(|&agent| read(agent)) {
+                } else if read.any(is_concerned) {
                     let until = self.guards.atoms[index].certified.min(self.present.time);
                     self.recertify(index, until);
                 }

@@ -1,11 +1,10 @@
 //! A comparison along the trajectories of the agents it reads: the curve on which roots are searched.
 
-use smallvec::SmallVec;
-
 use crate::codegen::kernel::{AgentBox, AgentView};
 use crate::codegen::program::Atom;
 use crate::math::Interval;
 use crate::runtime::population::{ABSENT, Agents, Slots};
+use crate::runtime::present::{Boxes, Views};
 use crate::runtime::solve::roots::Curve;
 
 /// Scratch rows for evaluating along segments; three rows (x, x', x'') for each slot.
@@ -77,7 +76,7 @@ impl Curve for AtomCurve<'_, '_> {
                 }
             }
         }
-        let views: SmallVec<[AgentView<'_>; 6]> = (0..self.slots.len())
+        let views: Views<'_> = (0..self.slots.len())
             .map(|slot| {
                 let agent = self.slots[slot];
                 if agent == ABSENT {
@@ -112,7 +111,7 @@ impl Curve for AtomCurve<'_, '_> {
                 }
             }
         }
-        let boxes: SmallVec<[AgentBox<'_>; 6]> = (0..self.slots.len())
+        let boxes: Boxes<'_> = (0..self.slots.len())
             .map(|slot| {
                 let agent = self.slots[slot];
                 if agent == ABSENT {

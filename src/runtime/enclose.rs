@@ -4,10 +4,13 @@
 //! itself). The box is valid until an event or a kink in the group; whoever writes an agent wakes what reads it. If g
 //! keeps its sign on the boxes of the agents it reads, it cannot change before t + H.
 
+use smallvec::SmallVec;
+
 use crate::codegen::kernel::{AgentBox, Kernel};
 use crate::math::Interval;
 use crate::runtime::groups::Group;
 use crate::runtime::population::{ABSENT, Agents, Slots};
+use crate::runtime::present::Boxes;
 use crate::runtime::solve::control::Accuracy;
 
 /// Boxes of groups, kept for those who ask again.
@@ -66,7 +69,7 @@ impl Enclosures {
         t: f64,
         horizon: f64,
     ) -> Option<Interval> {
-        let mut places: smallvec::SmallVec<[(usize, usize, usize); 6]> = smallvec::SmallVec::new();
+        let mut places: SmallVec<[(usize, usize, usize); 3]> = SmallVec::new();
         for &slot in used {
             let agent = slots[slot];
             if agent == ABSENT || agents.agents[agent].states.is_empty() {
@@ -78,8 +81,7 @@ impl Enclosures {
             let first = before.map(|&member| agents.agents[member].states.len()).sum();
             places.push((slot, kept, first));
         }
-        // A box found for one slot may have pushed out that of another in the same call.
-        let boxes: smallvec::SmallVec<[AgentBox<'_>; 6]> = (0..slots.len())
+        let boxes: Boxes<'_> = (0..slots.len())
             .map(|slot| {
                 let agent = slots[slot];
                 if agent == ABSENT {
@@ -181,7 +183,7 @@ impl Enclosures {
             let flow = agents.flow(member);
             let slots = agents.slots(&flow.frame, &[member]);
             let mut rates = vec![Interval::WHOLE; agents.agents[member].states.len()];
-            let boxes: Vec<AgentBox<'_>> = slots
+            let boxes: Boxes<'_> = slots
                 .iter()
                 .map(|&agent| {
                     if agent == ABSENT {

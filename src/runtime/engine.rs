@@ -5,6 +5,7 @@ use std::collections::BinaryHeap;
 
 use crate::base::{Diagnostic, Span};
 use crate::codegen::program::Program;
+use crate::math::Interval;
 use crate::runtime::advance::Stepper;
 use crate::runtime::detect::CurveRows;
 use crate::runtime::enclose::Enclosures;
@@ -76,6 +77,10 @@ pub struct Engine<'p, 'o> {
     pub stepper: Stepper,
     /// Scratch for root searches, with their counts.
     pub curves: CurveRows,
+    /// Scratch: rows as intervals.
+    pub points: Vec<Interval>,
+    /// Scratch: registers of interval kernels.
+    pub registers: Vec<Interval>,
     /// Bounds for sleeping.
     pub enclosures: Enclosures,
     /// What is due when.
@@ -141,6 +146,8 @@ impl<'p, 'o> Engine<'p, 'o> {
             recorder: Recorder::new(program, time_end),
             repetitions: Repetitions::new(limits, guards.instances.len()),
             groups: Groups::default(),
+            points: Vec::new(),
+            registers: Vec::new(),
             queues: Queues::default(),
             firings: vec![0; guards.definitions.len()],
             events_of_type: vec![0; program.types.len()],

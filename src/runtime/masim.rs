@@ -64,7 +64,7 @@ impl Engine<'_, '_> {
     fn begin(&mut self) -> Result<(), Failure> {
         self.present.go(0.0);
         let all: Vec<usize> = (0..self.agents.len()).collect();
-        self.set_locks(&all);
+        self.set_locks(all.iter().copied());
         let mut written = Written::default();
         for group in self.groups.divide(&mut self.agents, &all, 0.0, &|_| None) {
             self.queue_clock(group);
@@ -77,7 +77,7 @@ impl Engine<'_, '_> {
             entered.reverse();
             self.run_entries(agent, &entered, &mut written)?;
         }
-        self.set_locks(&written.restarted);
+        self.set_locks(written.restarted.iter().copied());
         self.recorder.begin(&self.agents, &mut self.present, self.observer)?;
         self.arm_all()?;
         let instances = 0..self.guards.instances.len() as u32;

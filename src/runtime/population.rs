@@ -12,7 +12,7 @@ use crate::runtime::solve::segment::Segment;
 pub const ABSENT: usize = usize::MAX;
 
 /// The agents in the slots of a frame; [`ABSENT`] where there is none.
-pub type Slots = SmallVec<[usize; 6]>;
+pub type Slots = SmallVec<[usize; 4]>;
 
 /// One agent.
 #[derive(Clone, Debug)]

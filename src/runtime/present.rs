@@ -2,11 +2,14 @@
 
 use smallvec::SmallVec;
 
-use crate::codegen::kernel::AgentView;
+use crate::codegen::kernel::{AgentBox, AgentView};
 use crate::runtime::population::{ABSENT, Agents};
 
 /// The views that a kernel takes.
-pub type Views<'a> = SmallVec<[AgentView<'a>; 6]>;
+pub type Views<'a> = SmallVec<[AgentView<'a>; 3]>;
+
+/// The boxes that a kernel takes.
+pub type Boxes<'a> = SmallVec<[AgentBox<'a>; 3]>;
 
 /// How much of an agent's rows is needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
