@@ -107,12 +107,10 @@ impl<'a> Context<'a> {
                 self.texts.push(text.unwrap_or_default());
                 Meaning::Text(self.texts.len() - 1)
             }
-            Ty::Real | Ty::Int | Ty::Bool => match given {
-                Some(Given::Number(number)) => Meaning::Number(number, slot.ty),
-                Some(Given::Text(_)) | None => match self.constant(value, &item.value, &what) {
-                    Some(number) => Meaning::Number(number, slot.ty),
-                    None => Meaning::Failed,
-                },
+            Ty::Real | Ty::Int | Ty::Bool => match (self.constant(value, &item.value, &what), given) {
+                (None, _) => Meaning::Failed,
+                (Some(_), Some(Given::Number(number))) => Meaning::Number(number, slot.ty),
+                (Some(number), Some(Given::Text(_)) | None) => Meaning::Number(number, slot.ty),
             },
             Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::Wrong => {
                 self.no_reference(slot.ty, "a `param`", item.value.span);

@@ -342,7 +342,11 @@ impl<'a> Context<'a> {
         };
         match op {
             CompareOp::NotEqual => self.apply(Op::Not, vec![same.id], Ty::Bool, span),
-            _ => same,
+            CompareOp::Equal
+            | CompareOp::Less
+            | CompareOp::LessEqual
+            | CompareOp::Greater
+            | CompareOp::GreaterEqual => same,
         }
     }
 

@@ -118,6 +118,46 @@ fn a_hundred_thousand_agents_refer_to_each_other() {
     assert_eq!((last.states[0], last.links[0]), (2.0 * 99_999.0 * 99_999.0 + 99_999.0, Some(0)));
 }
 
+/// One text under every name.
+struct Only(String);
+
+impl Files for Only {
+    fn read(&mut self, _path: &str) -> std::io::Result<String> {
+        Ok(self.0.clone())
+    }
+}
+
+#[test]
+fn a_data_file_of_a_hundred_thousand_rows_makes_as_many_agents() {
+    let rows = (0..100_000).map(|k| format!("{k},0.5,true\r\n")).collect::<String>();
+    let text = "agent C(lit: bool) { state x: real [km], y flow { x' = y y' = 1 } } system { c = C[] from csv(\"c.csv\") }";
+    let mut sources = SourceMap::default();
+    let file = sources.add("model.hy", text);
+    let ast = parse(file, text).expect("right");
+    let mut files = Only(format!("\u{feff}x,y,lit\r\n{rows}"));
+    let model = check(&ast, &mut sources, &mut files, &Settings::default()).model.expect("right");
+    assert_eq!(model.population.agents.len(), 100_000);
+    let last = &model.population.agents[99_999];
+    assert_eq!(
+        (last.states.as_slice(), last.params.as_slice()),
+        ([99_999_000.0, 0.5].as_slice(), [1.0].as_slice())
+    );
+}
+
+#[test]
+fn every_code_of_this_floor_has_a_case_and_every_case_a_code() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut codes = std::collections::BTreeSet::new();
+    for entry in std::fs::read_dir(root.join("src/model/error")).expect("the folder is there") {
+        let text = std::fs::read_to_string(entry.expect("readable").path()).expect("readable");
+        let quoted = text.split('"').filter(|part| part.len() == 6 && part.starts_with("HY02"));
+        codes.extend(quoted.map(str::to_string));
+    }
+    let cases = texts_in(&errors()).into_iter().map(|(name, _)| name[..6].to_string());
+    let cases = cases.filter(|code| code.starts_with("HY02")).collect::<std::collections::BTreeSet<_>>();
+    assert_eq!(codes, cases);
+}
+
 /// The settings that the first line of a case names: `// -p N=3 --tolerance 0`.
 fn settings_of(text: &str) -> Settings {
     let mut settings = Settings::default();
