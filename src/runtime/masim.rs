@@ -7,7 +7,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::codegen::kernel::Kernel;
-use crate::codegen::program::{Relation, Trigger};
+use crate::codegen::program::{Atom, Relation, Trigger};
 use crate::runtime::act::Written;
 use crate::runtime::advance::{Advance, Obstacle};
 use crate::runtime::detect::AtomCurve;
@@ -25,6 +25,9 @@ use crate::runtime::truth::{self, Side, depth_read};
 
 /// How many rounds of the loop pass between two looks at the interrupt flag.
 const ROUNDS: u64 = 1024;
+
+/// A run without an end that gets here will not stop by itself, s.
+const ENDLESS: f64 = 1e15;
 
 impl Engine<'_, '_> {
     /// Runs to the end.
@@ -54,6 +57,8 @@ impl Engine<'_, '_> {
                 self.execute(cause)?;
             } else if cover >= self.time_end {
                 return self.finish();
+            } else if cover > ENDLESS {
+                return Err(Reason::NeverEnds { time: cover }.into());
             } else {
                 self.advance_laggard(cover)?;
             }
@@ -175,7 +180,7 @@ impl Engine<'_, '_> {
             return;
         }
         if depth_read(kernel) == Depth::States && !blocked {
-            if let Some(until) = self.sleep(index, kernel, &slots, &atom.slots, from, to) {
+            if let Some(until) = self.sleep(index, atom, kernel, &slots, from, to) {
                 self.certified(index, until);
                 return;
             }
@@ -221,12 +226,13 @@ impl Engine<'_, '_> {
     fn sleep(
         &mut self,
         index: usize,
+        atom: &Atom,
         kernel: &Kernel,
         slots: &Slots,
-        used: &[usize],
         from: f64,
         to: f64,
     ) -> Option<f64> {
+        let used = &atom.slots;
         let state = &mut self.guards.atoms[index];
         if state.stride < 0.0 {
             // Not worth trying for a while.
@@ -237,6 +243,7 @@ impl Engine<'_, '_> {
         let left = if self.time_end.is_finite() { self.time_end - from } else { 1e6 };
         let least = 2.0 * (to - from);
         let mut horizon = if state.stride > 0.0 { state.stride } else { left }.min(left);
+        let mut here = None;
         for _ in 0..4 {
             if horizon <= least {
                 break;
@@ -254,7 +261,13 @@ impl Engine<'_, '_> {
                 self.guards.atoms[index].stride = 2.0 * horizon;
                 return Some((from + horizon).min(self.time_end));
             }
-            horizon *= 0.2;
+            // As far as a straight line from g here to the worst of the bound stays clear, with room.
+            let here = *here.get_or_insert_with(|| {
+                AtomCurve::new(&self.agents, atom, slots, &mut self.curves).jet(from)[0]
+            });
+            let worst = bound.map_or(f64::NAN, |bound| if truth { bound.hi } else { bound.lo });
+            let share = 0.7 * here / (here - worst);
+            horizon *= if share.is_finite() { share.clamp(1e-3, 0.25) } else { 0.2 };
         }
         self.guards.atoms[index].stride = -4.0;
         None

@@ -290,7 +290,8 @@ fn convex(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, at_end: &[f64; 3], k
     if f.jet(s)[1] >= 0.0 {
         return Look::Clear;
     }
-    let lowest = extremum(f, s, e);
+    let (before, after) = turning_point(f, s, e);
+    let lowest = if f.value(before) < f.value(after) { before } else { after };
     let value = f.value(lowest);
     let rounding = f.rounding(lowest)[0];
     if value < -rounding {
@@ -313,11 +314,12 @@ fn concave(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, at_end: &[f64; 3], 
     let from = match entry {
         Entry::Clear => s,
         Entry::Boundary | Entry::Unsettled => {
-            let highest = if f.jet(s)[1] <= 0.0 { s } else { extremum(f, s, e) };
-            if f.value(highest) <= 0.0 {
-                return Look::Flip(Flip { time: highest, near: highest, undecided: false });
+            let (rising, sinking) = if f.jet(s)[1] <= 0.0 { (s, s) } else { turning_point(f, s, e) };
+            if f.value(rising).max(f.value(sinking)) <= 0.0 {
+                // It never rose above zero by more than rounding, and now its rate points down.
+                return Look::Flip(Flip { time: sinking, near: rising, undecided: false });
             }
-            highest
+            if f.value(sinking) > 0.0 { sinking } else { rising }
         }
     };
     Look::Flip(isolate(f, from, e))
@@ -341,14 +343,13 @@ fn divisible(s: f64, e: f64) -> bool {
     e - s > 4.0 * ulp(e)
 }
 
-/// Where the monotone f' changes its sign in [s, e].
-fn extremum(f: &mut Turned<'_>, s: f64, e: f64) -> f64 {
+/// Neighbouring times between which the monotone f' changes its sign in [s, e].
+fn turning_point(f: &mut Turned<'_>, s: f64, e: f64) -> (f64, f64) {
     let rising = f.jet(e)[1] > 0.0;
-    let (lo, hi) = bracket(s, e, &mut |t| {
+    bracket(s, e, &mut |t| {
         let rate = f.jet(t)[1];
         if rising { -rate } else { rate }
-    });
-    if f.value(lo) < f.value(hi) { lo } else { hi }
+    })
 }
 
 /// The root in [s, e] of an f that is positive at s, not positive at e, and falls.
