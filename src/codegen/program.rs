@@ -1,6 +1,6 @@
 //! The product of this floor: a program that runs. The structure of the system with a kernel for every function of it.
 
-use crate::calculus::system::FunctionId;
+pub use crate::calculus::system::FunctionId;
 pub use crate::calculus::system::{
     ActionList, ActionStep, AgentSystem, Atom, ClaimKind, ClaimSystem, Column, Condition, Flow, Frame, Guard,
     InteractionSystem, Kink, KinkKind, Layout, LetSystem, LetValue, ModeSystem, PairTransition, Population,

@@ -19,6 +19,8 @@ mod engine;
 mod act;
 mod arm;
 mod instant;
+mod certify;
+mod gather;
 mod masim;
 
 use std::sync::atomic::AtomicBool;

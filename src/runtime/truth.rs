@@ -1,6 +1,7 @@
 //! The truth of conditions: from the truths of their atoms, or straight from the rows of the present instant.
 
-use crate::codegen::program::{Condition, Guard, Quantified, Relation};
+use crate::codegen::kernel::Kernel;
+use crate::codegen::program::{Condition, Frame, FunctionId, Guard, Quantified, Relation};
 use crate::runtime::guards::{Guards, Origin, allowed};
 use crate::runtime::population::{Agents, Slots};
 use crate::runtime::present::{Depth, Present};
@@ -159,13 +160,7 @@ impl Truths<'_, '_> {
 }
 
 /// Whether a condition holds for the rows of the present instant, comparison by comparison (tests in actions, lets).
-pub fn test(
-    agents: &Agents<'_>,
-    present: &mut Present,
-    guard: &Guard,
-    frame: &crate::codegen::program::Frame,
-    slots: &Slots,
-) -> bool {
+pub fn test(agents: &Agents<'_>, present: &mut Present, guard: &Guard, frame: &Frame, slots: &Slots) -> bool {
     let mut slots = slots.clone();
     let roots = [slots[0]];
     test_condition(agents, present, guard, frame, &guard.condition, &mut slots, &roots)
@@ -175,7 +170,7 @@ fn test_condition(
     agents: &Agents<'_>,
     present: &mut Present,
     guard: &Guard,
-    frame: &crate::codegen::program::Frame,
+    frame: &Frame,
     condition: &Condition,
     slots: &mut Slots,
     roots: &[usize],
@@ -214,12 +209,7 @@ fn test_condition(
 }
 
 /// The single output of a function on the rows of the present instant.
-pub fn value(
-    agents: &Agents<'_>,
-    present: &mut Present,
-    function: crate::calculus::system::FunctionId,
-    slots: &Slots,
-) -> f64 {
+pub fn value(agents: &Agents<'_>, present: &mut Present, function: FunctionId, slots: &Slots) -> f64 {
     let kernel = agents.program.kernel(function);
     present.make(agents, slots, depth_read(kernel));
     let mut out = [0.0];
@@ -228,7 +218,7 @@ pub fn value(
 }
 
 /// How deep the rows must be for a kernel.
-pub fn depth_read(kernel: &crate::codegen::kernel::Kernel) -> Depth {
+pub fn depth_read(kernel: &Kernel) -> Depth {
     let slots = &kernel.reads().slots;
     if slots.iter().any(|slot| slot.accelerations > 0) {
         Depth::Accelerations

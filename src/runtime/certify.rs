@@ -1,0 +1,166 @@
+//! Certification (I2, I3, I6): each comparison is known not to change up to a time, or known to change at one.
+use crate::codegen::kernel::Kernel;
+use crate::codegen::program::Atom;
+use crate::runtime::detect::AtomCurve;
+use crate::runtime::engine::{Due, Engine};
+use crate::runtime::guards::closed;
+use crate::runtime::population::{ABSENT, Slots};
+use crate::runtime::present::Depth;
+use crate::runtime::solve::roots::{Curve, Known, Search, first_flip};
+use crate::runtime::solve::{time_resolution, ulp};
+use crate::runtime::truth::{self, depth_read};
+
+impl Engine<'_, '_> {
+    /// Certifies every atom up to the cover at least.
+    pub fn certify_up_to(&mut self, cover: f64) {
+        while let Some(&due) = self.queues.uncertified.peek() {
+            if due.time >= cover {
+                return;
+            }
+            self.queues.uncertified.pop();
+            if self.guards.atoms[due.number as usize].version == due.version {
+                self.certify(due.number as usize, false);
+            }
+        }
+    }
+
+    /// Looks once more at every atom that is certified up to the cover only: a root that is due within the resolution of
+    /// time counts as being there.
+    pub fn certify_at(&mut self, cover: f64) {
+        let mut due_here = Vec::new();
+        while let Some(due) = self.queues.uncertified.peek().copied().filter(|due| due.time <= cover) {
+            self.queues.uncertified.pop();
+            if self.guards.atoms[due.number as usize].version == due.version {
+                due_here.push(due.number as usize);
+            }
+        }
+        for index in due_here {
+            self.certify(index, true);
+        }
+    }
+
+    /// Certifies one atom on the stretch that all its agents' segments cover, or finds its next change there.
+    fn certify(&mut self, index: usize, blocked: bool) {
+        let (atom, slots) = self.guards.atom_slots(&self.agents, index);
+        let from = self.guards.atoms[index].certified;
+        let mut to = self.time_end;
+        for &slot in &atom.slots {
+            if slots[slot] != ABSENT {
+                to = to.min(self.groups.groups[self.agents.agents[slots[slot]].group].clock);
+            }
+        }
+        let kernel = self.program.kernel(atom.value);
+        let absent = atom.slots.iter().any(|&slot| slots[slot] == ABSENT);
+        if absent && truth::value(&self.agents, &mut self.present, atom.value, &slots).is_nan() {
+            self.certified(index, self.time_end);
+            return;
+        }
+        if depth_read(kernel) == Depth::States && !blocked {
+            if let Some(until) = self.sleep(index, atom, kernel, &slots, from, to) {
+                self.certified(index, until);
+                return;
+            }
+        }
+        let state = self.guards.atoms[index];
+        let known = Known {
+            truth: state.truth,
+            closed: closed(atom.relation, state.truth),
+            slack: state.slack,
+            settled: state.settled,
+            reach: if blocked { time_resolution(to) } else { 2.0 * ulp(to) },
+        };
+        let mut curve = AtomCurve::new(&self.agents, atom, &slots, &mut self.curves);
+        match first_flip(&mut curve, from, to, known, self.limits.pieces_max) {
+            Search::None => self.certified(index, to),
+            Search::Flip(flip) => {
+                self.n_undecided += u64::from(flip.undecided);
+                let state = &mut self.guards.atoms[index];
+                state.flip = flip.time;
+                state.near = flip.near;
+                state.touch = flip.undecided;
+                state.version += 1;
+                self.queues.flips.push(Due { time: flip.time, number: index as u32, version: state.version });
+            }
+        }
+    }
+
+    /// Notes that an atom does not change before `until`.
+    fn certified(&mut self, index: usize, until: f64) {
+        let state = &mut self.guards.atoms[index];
+        if until > state.certified {
+            state.slack = 0.0;
+            state.settled = false;
+        }
+        state.certified = until;
+        state.version += 1;
+        if until < self.time_end {
+            self.queues.uncertified.push(Due { time: until, number: index as u32, version: state.version });
+        }
+    }
+
+    /// I6: how long an atom cannot change, if that is longer than its segments reach.
+    fn sleep(
+        &mut self,
+        index: usize,
+        atom: &Atom,
+        kernel: &Kernel,
+        slots: &Slots,
+        from: f64,
+        to: f64,
+    ) -> Option<f64> {
+        let used = &atom.slots;
+        let state = &mut self.guards.atoms[index];
+        if state.stride < 0.0 {
+            // Not worth trying for a while.
+            state.stride += 1.0;
+            return None;
+        }
+        let truth = state.truth;
+        let left = if self.time_end.is_finite() { self.time_end - from } else { 1e6 };
+        let least = 2.0 * (to - from);
+        let mut horizon = if state.stride > 0.0 { state.stride } else { left }.min(left);
+        let mut here = None;
+        for _ in 0..4 {
+            if horizon <= least {
+                break;
+            }
+            let bound = self.enclosures.value_range(
+                &self.agents,
+                &self.groups.groups,
+                kernel,
+                slots,
+                used,
+                from,
+                horizon,
+            );
+            if bound.is_some_and(|bound| if truth { bound.hi < 0.0 } else { bound.lo > 0.0 }) {
+                self.guards.atoms[index].stride = 2.0 * horizon;
+                return Some((from + horizon).min(self.time_end));
+            }
+            // As far as a straight line from g here to the worst of the bound stays clear, with room.
+            let here = *here.get_or_insert_with(|| {
+                AtomCurve::new(&self.agents, atom, slots, &mut self.curves).jet(from)[0]
+            });
+            let worst = bound.map_or(f64::NAN, |bound| if truth { bound.hi } else { bound.lo });
+            let share = 0.7 * here / (here - worst);
+            horizon *= if share.is_finite() { share.clamp(1e-3, 0.25) } else { 0.2 };
+        }
+        self.guards.atoms[index].stride = -4.0;
+        None
+    }
+
+    /// What reads these agents is certified no further than `time`.
+    pub fn doubt(&mut self, agents: &[usize], time: f64) {
+        for instance in self.reading(agents) {
+            if !self.guards.instances[instance as usize].active {
+                continue;
+            }
+            for index in self.guards.atom_range(instance) {
+                let state = &self.guards.atoms[index];
+                if state.certified > time && state.flip == f64::INFINITY {
+                    self.recertify(index, time);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! What makes one instant (rule 4): the roots and scheduled times that are due together, and who fires by them.
+//!
+//! All that is due at exactly the same time is one instant; roots that lie within the resolution of time after it join if
+//! they share an agent with something due then. Scheduled times are never moved: a root near one joins it.
+use crate::codegen::program::{Relation, Trigger};
+use crate::runtime::detect::AtomCurve;
+use crate::runtime::engine::{Due, Engine};
+use crate::runtime::failure::Failure;
+use crate::runtime::guards::Origin;
+use crate::runtime::instant::Candidate;
+use crate::runtime::present::Depth;
+use crate::runtime::solve::roots::Curve;
+use crate::runtime::solve::time_resolution;
+use crate::runtime::truth::Side;
+
+impl Engine<'_, '_> {
+    /// The time of the next change of an atom or of the next scheduled time.
+    pub fn next_cause(&mut self) -> f64 {
+        let flips = &mut self.queues.flips;
+        while flips.peek().is_some_and(|due| self.guards.atoms[due.number as usize].version != due.version) {
+            flips.pop();
+        }
+        let schedules = &mut self.queues.schedules;
+        while schedules
+            .peek()
+            .is_some_and(|due| self.guards.instances[due.number as usize].arming != due.version)
+        {
+            schedules.pop();
+        }
+        let time = |due: Option<&Due>| due.map_or(f64::INFINITY, |due| due.time);
+        time(self.queues.flips.peek()).min(time(self.queues.schedules.peek()))
+    }
+
+    /// Applies the changes that are due at `first`, and executes the instant if something fires.
+    pub fn execute(&mut self, first: f64) -> Result<(), Failure> {
+        let window = first + time_resolution(first);
+        let cover = self.cover().min(self.time_end);
+        self.certify_up_to(window.min(cover));
+        let flips = self.pop_flips(window);
+        let schedules = self.pop_schedules(window);
+        let seeds: Vec<u32> = flips
+            .iter()
+            .filter(|due| due.time == first)
+            .map(|due| self.guards.atoms[due.number as usize].instance)
+            .chain(schedules.iter().filter(|due| due.time == first).map(|due| due.number))
+            .collect();
+        let joins = |engine: &Self, instance: u32, time: f64| {
+            time == first || seeds.iter().any(|&seed| engine.share_an_agent(seed, instance))
+        };
+        let (mut now, mut time) = (Vec::new(), first);
+        for due in schedules {
+            if joins(self, due.number, due.time) {
+                time = due.time;
+                now.push(due);
+            } else {
+                self.queues.schedules.push(due);
+            }
+        }
+        let (mut changed, mut near) = (Vec::new(), first);
+        for due in flips {
+            let index = due.number as usize;
+            if joins(self, self.guards.atoms[index].instance, due.time) {
+                near = near.min(self.guards.atoms[index].near);
+                changed.push(index);
+            } else {
+                self.queues.flips.push(due);
+            }
+        }
+        if now.is_empty() {
+            time = self.defined_side(time, near, &changed);
+        }
+        self.present.go(time);
+        let mut concerned: Vec<u32> = Vec::new();
+        for index in changed {
+            self.flip(index);
+            concerned.push(self.guards.atoms[index].instance);
+        }
+        let mut candidates = Vec::new();
+        for due in now {
+            concerned.push(due.number);
+            candidates.extend(self.scheduled(due.number));
+        }
+        concerned.sort_unstable();
+        concerned.dedup();
+        let mut claims = false;
+        for &instance in &concerned {
+            if self.enabled(instance) {
+                candidates.push(Candidate { instance, pulse: false });
+            }
+            claims |= matches!(self.guards.definition(instance).origin, Origin::Claim(_));
+        }
+        candidates.retain(|candidate| !candidate.pulse || self.truths().holds(candidate.instance, Side::At));
+        if !candidates.is_empty() {
+            self.instant(candidates)?;
+        }
+        if claims {
+            self.judge_claims(&concerned)?;
+        }
+        for instance in concerned {
+            self.calm(instance);
+        }
+        Ok(())
+    }
+
+    fn pop_flips(&mut self, window: f64) -> Vec<Due> {
+        let mut flips = Vec::new();
+        while let Some(&due) = self.queues.flips.peek() {
+            if due.time > window {
+                break;
+            }
+            self.queues.flips.pop();
+            if self.guards.atoms[due.number as usize].version == due.version {
+                flips.push(due);
+            }
+        }
+        flips
+    }
+
+    fn pop_schedules(&mut self, window: f64) -> Vec<Due> {
+        let mut schedules = Vec::new();
+        while let Some(&due) = self.queues.schedules.peek() {
+            if due.time > window {
+                break;
+            }
+            self.queues.schedules.pop();
+            if self.guards.instances[due.number as usize].arming == due.version {
+                schedules.push(due);
+            }
+        }
+        schedules
+    }
+
+    /// Rule 4: whether one writes what the other reads or writes (by agents).
+    fn share_an_agent(&self, a: u32, b: u32) -> bool {
+        let reads = |reader: u32, agent: usize| {
+            let definition = self.guards.definition(reader);
+            self.guards.slots(&self.agents, reader).contains(&agent)
+                || definition.quantified.contains(&self.agents.agents[agent].ty)
+        };
+        let touches =
+            |writer: u32, reader: u32| self.guards.roots(writer).iter().any(|&agent| reads(reader, agent));
+        touches(a, b) || touches(b, a)
+    }
+
+    /// The true side of the roots, or the near side if the flows are not defined on the true one (rule 3).
+    fn defined_side(&mut self, time: f64, near: f64, changed: &[usize]) -> f64 {
+        if near >= time {
+            return time;
+        }
+        let mut agents: Vec<usize> = Vec::new();
+        for &index in changed {
+            let instance = self.guards.atoms[index].instance;
+            for agent in self.guards.roots(instance) {
+                if !agents.contains(&agent) {
+                    agents.push(agent);
+                }
+            }
+        }
+        let mut defined = |time: f64| {
+            self.present.go(time);
+            agents.iter().all(|&agent| {
+                self.present.make(&self.agents, &[agent], Depth::Rates);
+                self.present.rates(agent).iter().all(|rate| rate.is_finite())
+            })
+        };
+        if !defined(time) && defined(near) { near } else { time }
+    }
+
+    /// Changes the truth of an atom at the present instant.
+    fn flip(&mut self, index: usize) {
+        let (atom, slots) = self.guards.atom_slots(&self.agents, index);
+        let time = self.present.time;
+        let jet = { AtomCurve::new(&self.agents, atom, &slots, &mut self.curves).jet(time) };
+        let state = &mut self.guards.atoms[index];
+        state.touched = match atom.relation {
+            Relation::NonPositive => state.truth,
+            Relation::Negative => false,
+            Relation::Crossing => true,
+        };
+        state.truth = !state.truth;
+        state.rooted = true;
+        let slack = jet[1].abs() * time_resolution(time);
+        self.recertify(index, time);
+        let state = &mut self.guards.atoms[index];
+        state.slack = if slack.is_finite() { slack } else { 0.0 };
+        state.settled = !state.touch;
+    }
+
+    /// A scheduled time of an instance has come: its delay is over, or its period has passed once more.
+    fn scheduled(&mut self, instance: u32) -> Option<Candidate> {
+        let trigger = match self.guards.definition(instance).origin {
+            Origin::Transition(transition) => &transition.trigger,
+            Origin::Pair(pair) => &pair.transition.trigger,
+            Origin::Claim(_) => return None,
+        };
+        let periodic = matches!(trigger, Trigger::Every { .. });
+        let state = &mut self.guards.instances[instance as usize];
+        if !periodic {
+            state.aged = true;
+            return None;
+        }
+        state.periods += 1;
+        self.queue_schedule(instance);
+        Some(Candidate { instance, pulse: true })
+    }
+}
