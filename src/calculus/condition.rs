@@ -10,8 +10,9 @@ use crate::calculus::build;
 use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
 use crate::calculus::frame::{AgentRef, EnvId, Scope, Value};
-use crate::calculus::graph::{Node, NodeId};
-use crate::calculus::system::{Relation, Slot};
+use crate::calculus::graph::NodeId;
+use crate::calculus::jumps;
+use crate::calculus::system::Relation;
 use crate::math::Op;
 use crate::model::ir::{ExprId, ExprKind, Quantifier, Type};
 
@@ -60,7 +61,7 @@ pub enum Sense {
 }
 
 impl Sense {
-    fn opposite(self) -> Self {
+    pub fn opposite(self) -> Self {
         match self {
             Sense::Positive => Sense::Negative,
             Sense::Negative => Sense::Positive,
@@ -74,13 +75,13 @@ pub fn lower(draft: &mut Draft, scope: &mut Scope, expr: ExprId, sense: Sense) -
     Lowering { draft, scope, span, parts: 0, depth: 0, quantifiers: 0 }.lower(Scope::TOP, expr, sense)
 }
 
-struct Lowering<'d, 'm> {
-    draft: &'d mut Draft<'m>,
-    scope: &'d mut Scope,
+pub(super) struct Lowering<'d, 'm> {
+    pub draft: &'d mut Draft<'m>,
+    pub scope: &'d mut Scope,
     /// Where the whole condition stands.
-    span: Span,
-    parts: usize,
-    depth: usize,
+    pub span: Span,
+    pub parts: usize,
+    pub depth: usize,
     quantifiers: usize,
 }
 
@@ -176,7 +177,7 @@ impl Lowering<'_, '_> {
     }
 
     /// `and` or `or` of conditions: nested ones opened, constants applied, discrete tests merged and put first.
-    fn join(&mut self, op: Op, terms: Vec<Cond>) -> Cond {
+    pub fn join(&mut self, op: Op, terms: Vec<Cond>) -> Cond {
         let neutral = op == Op::And;
         let (mut discrete, mut rest): (Option<NodeId>, Vec<Cond>) = (None, Vec::new());
         let flat = terms.into_iter().flat_map(|term| match (term, op) {
@@ -223,7 +224,7 @@ impl Lowering<'_, '_> {
         Ok(self.either(holds, fails, then, otherwise))
     }
 
-    fn either(&mut self, holds: Cond, fails: Cond, then: Cond, otherwise: Cond) -> Cond {
+    pub fn either(&mut self, holds: Cond, fails: Cond, then: Cond, otherwise: Cond) -> Cond {
         let first = self.join(Op::And, vec![holds, then]);
         let second = self.join(Op::And, vec![fails, otherwise]);
         self.join(Op::Or, vec![first, second])
@@ -277,6 +278,7 @@ impl Lowering<'_, '_> {
     fn crossing(&mut self, env: EnvId, e: ExprId, sense: Sense, span: Span) -> Result<Cond, Error> {
         not_negated("crossing", sense, span)?;
         let g = self.number(env, e)?;
+        let g = jumps::as_choices(&mut self.draft.graph, g);
         self.atom(Relation::Crossing, g, span)
     }
 
@@ -311,124 +313,6 @@ impl Lowering<'_, '_> {
             (_, Sense::Negative) => self.less(Relation::NonPositive, b, a, span),
         }
     }
-
-    /// `a == b` or `a != b` of numbers; the model allows reals only where both are discrete.
-    fn equality(&mut self, same: bool, a: NodeId, b: NodeId, span: Span) -> Result<Cond, Error> {
-        let moving = self.draft.graph.moves(a) || self.draft.graph.moves(b);
-        if same && !moving {
-            let node = self.draft.graph.binary(Op::Eq, a, b);
-            return self.test(node, Sense::Positive, span);
-        }
-        if !same && !moving && !self.reads_links(a) && !self.reads_links(b) {
-            let node = self.draft.graph.binary(Op::Ne, a, b);
-            return self.test(node, Sense::Positive, span);
-        }
-        // Two comparisons, of which an agent that is not there makes neither true.
-        let relation = if same { Relation::NonPositive } else { Relation::Negative };
-        let (below, above) = (self.less(relation, a, b, span)?, self.less(relation, b, a, span)?);
-        Ok(self.join(if same { Op::And } else { Op::Or }, vec![below, above]))
-    }
-
-    fn reads_links(&self, id: NodeId) -> bool {
-        let is_link = |slot: usize| matches!(self.scope.frame.slots[slot], Slot::Link { .. });
-        self.draft
-            .graph
-            .reach(&[id])
-            .into_iter()
-            .any(|id| self.draft.graph.node(id).slot().is_some_and(is_link))
-    }
-
-    /// `a <= b` or `a < b`.
-    fn less(&mut self, relation: Relation, a: NodeId, b: NodeId, span: Span) -> Result<Cond, Error> {
-        let graph = &mut self.draft.graph;
-        if !graph.moves(a) && !graph.moves(b) {
-            let op = if relation == Relation::NonPositive { Op::Le } else { Op::Lt };
-            let node = graph.binary(op, a, b);
-            return self.test(node, Sense::Positive, span);
-        }
-        if let Some(square) = self.distance_square(a).filter(|_| !self.draft.graph.moves(b)) {
-            return self.distance(relation, square, b, Side::Below, span);
-        }
-        if let Some(square) = self.distance_square(b).filter(|_| !self.draft.graph.moves(a)) {
-            return self.distance(relation, square, a, Side::Above, span);
-        }
-        let graph = &mut self.draft.graph;
-        let g = match (graph.is_zero(a), graph.is_zero(b)) {
-            (_, true) => a,
-            (true, false) => graph.unary(Op::Neg, b),
-            (false, false) => graph.binary(Op::Sub, a, b),
-        };
-        self.atom(relation, g, span)
-    }
-
-    /// e for `sqrt(e)`, u^2 + v^2 for `hypot(u, v)`.
-    fn distance_square(&mut self, id: NodeId) -> Option<NodeId> {
-        match self.draft.graph.node(id) {
-            Node::Unary(Op::Sqrt, e) => Some(e),
-            Node::Binary(Op::Hypot, u, v) => {
-                let squares = [u, v].map(|w| self.square(w));
-                Some(self.draft.graph.binary(Op::Add, squares[0], squares[1]))
-            }
-            _ => None,
-        }
-    }
-
-    fn square(&mut self, id: NodeId) -> NodeId {
-        let two = self.draft.graph.number(2.0);
-        self.draft.graph.binary(Op::Powi, id, two)
-    }
-
-    /// A distance, given by its square, below or above a `bound` that does not move.
-    fn distance(
-        &mut self,
-        relation: Relation,
-        square: NodeId,
-        bound: NodeId,
-        side: Side,
-        span: Span,
-    ) -> Result<Cond, Error> {
-        let (zero, limit) = (self.draft.graph.number(0.0), self.square(bound));
-        let (u, v) = if side == Side::Below { (square, limit) } else { (limit, square) };
-        let squares = self.less(relation, u, v, span)?;
-        // For a bound of unknown sign: below a negative one is nothing, above it everything.
-        let (op, sign_op, test) = match side {
-            Side::Below => (Op::And, Op::Le, [zero, bound]),
-            Side::Above => (Op::Or, Op::Lt, [bound, zero]),
-        };
-        let test = self.draft.graph.binary(sign_op, test[0], test[1]);
-        let sign = self.test(test, Sense::Positive, span)?;
-        Ok(self.join(op, vec![sign, squares]))
-    }
-
-    /// A boolean node.
-    fn test(&mut self, node: NodeId, sense: Sense, span: Span) -> Result<Cond, Error> {
-        self.count()?;
-        let graph = &mut self.draft.graph;
-        if graph.moves(node) {
-            // Only a boolean that went through a number: 1 where true.
-            let half = graph.number(0.5);
-            return match sense {
-                Sense::Positive => self.less(Relation::NonPositive, half, node, span),
-                Sense::Negative => self.less(Relation::NonPositive, node, half, span),
-            };
-        }
-        let node = if sense == Sense::Positive { node } else { graph.unary(Op::Not, node) };
-        Ok(graph.constant(node).map_or(Cond::Discrete(node), |value| Cond::Constant(value != 0.0)))
-    }
-
-    fn atom(&mut self, relation: Relation, g: NodeId, span: Span) -> Result<Cond, Error> {
-        self.count()?;
-        Ok(Cond::Atom(relation, g, span))
-    }
-
-    fn count(&mut self) -> Result<(), Error> {
-        self.parts += 1;
-        if self.parts > PARTS_MAX {
-            Err(Error::ConditionTooLarge { limit: PARTS_MAX, span: self.span })
-        } else {
-            Ok(())
-        }
-    }
 }
 
 /// An event holds at an instant; its negation would hold nearly always.
@@ -437,11 +321,4 @@ fn not_negated(word: &'static str, sense: Sense, span: Span) -> Result<(), Error
         Sense::Positive => Ok(()),
         Sense::Negative => Err(Error::EventNegated { word, span }),
     }
-}
-
-/// On which side of its bound a distance is to be.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Side {
-    Below,
-    Above,
 }

@@ -103,11 +103,12 @@ fn jumps(graph: &Graph, id: NodeId) -> bool {
         Node::Select(condition, ..) => moving(condition),
         Node::Unary(op, a) | Node::Binary(op, a, _) => match op {
             Op::Sign | Op::Floor | Op::Ceil | Op::Round | Op::Trunc | Op::Not => moving(a),
-            Op::Mod | Op::Atan2 | Op::Lt | Op::Le | Op::Eq | Op::Ne | Op::And | Op::Or => moving(id),
+            Op::Mod | Op::Lt | Op::Le | Op::Eq | Op::Ne | Op::And | Op::Or => moving(id),
             Op::Neg | Op::Add | Op::Sub | Op::Mul | Op::Div | Op::Powi | Op::Pow | Op::Sin | Op::Cos => false,
             Op::Tan | Op::Asin | Op::Acos | Op::Atan | Op::Sinh | Op::Cosh | Op::Tanh | Op::Asinh => false,
             Op::Acosh | Op::Atanh | Op::Exp | Op::Log | Op::Log2 | Op::Log10 | Op::Sqrt | Op::Cbrt => false,
-            Op::Abs | Op::Min | Op::Max | Op::Hypot | Op::Select => false,
+            // The cut of atan2 has been taken out by an `if`.
+            Op::Atan2 | Op::Abs | Op::Min | Op::Max | Op::Hypot | Op::Select => false,
         },
         Node::Constant(_) | Node::Time | Node::State { .. } | Node::Rate { .. } => false,
         Node::Acceleration { .. } | Node::Aux { .. } => false,

@@ -130,6 +130,10 @@ impl Curve for AtomCurve<'_, '_> {
         let mut out = [Interval::WHOLE; 3];
         let time = Interval { lo: s, hi: e };
         self.agents.program.kernel(self.atom.rates).range(&boxes, time, &mut self.rows.registers, &mut out);
+        if !self.atom.smooth && s < e {
+            // The rates hold between the jumps of g only, and bound nothing across one.
+            (out[1], out[2]) = (Interval::WHOLE, Interval::WHOLE);
+        }
         out
     }
 }

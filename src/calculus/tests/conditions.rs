@@ -5,7 +5,8 @@ use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
 use crate::calculus::evaluate;
 use crate::calculus::frame::Scope;
-use crate::calculus::graph::NodeId;
+use crate::calculus::graph::{Graph, Node, NodeId};
+use crate::calculus::jumps;
 use crate::calculus::system::Relation;
 use crate::calculus::tests::random::{self, Point, Random};
 use crate::calculus::tests::simplification::leaf;
@@ -36,8 +37,20 @@ fn point(random: &mut Random) -> Point {
 #[test]
 fn the_normal_form_is_true_where_the_source_is() {
     let mut random = Random(5);
-    let ops =
-        [Op::Add, Op::Sub, Op::Mul, Op::Neg, Op::Abs, Op::Max, Op::Hypot, Op::Powi, Op::Select, Op::Floor];
+    let ops = [
+        Op::Add,
+        Op::Sub,
+        Op::Mul,
+        Op::Neg,
+        Op::Abs,
+        Op::Max,
+        Op::Hypot,
+        Op::Powi,
+        Op::Select,
+        Op::Floor,
+        Op::Ceil,
+        Op::Sign,
+    ];
     let (mut compared, mut yes) = (0, 0);
     for _ in 0..4000 {
         let mut model = random::model();
@@ -100,6 +113,35 @@ fn distances_are_compared_by_their_squares() {
         let at =
             Point { time: 0.0, states: vec![states[0], states[1], 0.0], param, discrete: 0.0, flag: 0.0 };
         assert_eq!(holds(&draft, &far, &at), expected, "{at:?}");
+    }
+}
+
+#[test]
+fn jumps_are_comparisons_of_their_own() {
+    let mut random = Random(7);
+    for op in [Op::Sign, Op::Atan2] {
+        let mut graph = Graph::default();
+        let operands: Vec<NodeId> =
+            (0..op.arity() as u32).map(|column| graph.intern(Node::State { slot: 0, column })).collect();
+        let plain = graph.apply(op, &operands);
+        let choices = jumps::as_choices(&mut graph, plain);
+        for _ in 0..200 {
+            let states = [(); 2].map(|()| random.pick(&[-1.0, 0.0, 2.0, 0.25]) * random.real(0.5, 1.0));
+            let mut read = |node| match node {
+                // The cut belongs to the upper side, so a zero is a positive one.
+                Node::State { column, .. } => states[column as usize] + 0.0,
+                node => panic!("{node:?} is not read"),
+            };
+            let [expected, found] = evaluate::values(&graph, &[plain, choices], &mut read)[..] else {
+                panic!("two")
+            };
+            let at_origin = op == Op::Atan2 && states == [0.0; 2];
+            assert!(
+                at_origin || (expected - found).abs() < 1e-15,
+                "{}: {expected} {found} at {states:?}",
+                op.name()
+            );
+        }
     }
 }
 

@@ -20,6 +20,7 @@ agent Car(reach: real) {
   events: when rising(x > 1 or y > 1) and open or crossing(x - y) { }
   speed: when fast and not (x' + y' >= 5) { }
   jumps: when mod(x, 2) >= 1 and floor(y) > 1 { }
+  opened: when atan2(y, x) < 0 or (if x > y then x else -y) + 1 <= 0 or sign(x) < y { }
   later: after 2*reach when x > 1 priority 3 - lane { if x > 2 { x := 0 } else { y := 0 stop "done" } }
   often: every 0.5 { x := x + 1 }
 }
