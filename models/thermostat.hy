@@ -1,14 +1,15 @@
-// thermostat.hy: a room is kept between 19 and 21 degrees above the freezing point by a heater that is on or off.
-// Shows two modes with flows of their own and a hysteresis; every switching time is known in closed form.
+// thermostat.hy: a room is kept between 19 and 21 degrees by a heater that is on or off; time is in hours.
+// Shows two modes with flows of their own and a hysteresis. In closed form: off at first, it cools in log(10/9);
+// then the heater is on for log(21/19) and off for log(11/9), in turn.
 
-param outside: real [K] = 278.15
-param low:     real [K] = 292.15
-param high:    real [K] = 294.15
-param heater:  real [K] = 30                 // how far above the outside the heater would bring the room
-param tau:     real [s] = 3600               // time constant of the walls
+param outside = 10
+param heater  = 30                           // how far above the outside the heater would bring the room
+param low     = 19
+param high    = 21
+param tau     = 1                            // time constant of the walls
 
-agent Room(start: real [K]) {
-  state T: real [K] = start
+agent Room {
+  state T = 20
   initial mode Off {
     flow { T' = (outside - T)/tau }
     cold: when T <= low -> On
@@ -19,6 +20,6 @@ agent Room(start: real [K]) {
   }
 }
 
-system { room = Room(start = 293.15) }
+system { room = Room() }
 
-run { until 14400 [s]  tolerance 1e-10  record room every 60 [s] to "thermostat.csv"  events to "switches.csv" }
+run { until 3  tolerance 1e-10  record room every 0.01 to "thermostat.csv"  events to "switches.csv" }

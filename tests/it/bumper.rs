@@ -1,0 +1,116 @@
+//! Does the bumper arena agree with its references? See `tests/data`: event logs and states at T = 20, computed at
+//! order 20 and tolerance 2e-16. The cars are chaotic: every event has to be right for the last one to be.
+
+use crate::harness::{Case, Run};
+
+/// An event of the reference: time, transition, cars.
+struct Reference {
+    time: f64,
+    transition: &'static str,
+    agent: String,
+    other: String,
+}
+
+fn rows(name: &str) -> Vec<Vec<String>> {
+    let path = format!("{}/tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    text.lines().skip(1).map(|line| line.split(',').map(String::from).collect()).collect()
+}
+
+fn events(n: usize) -> Vec<Reference> {
+    let event = |row: Vec<String>| Reference {
+        time: row[0].parse().expect("a time"),
+        transition: match row[1].as_str() {
+            "L" => "Car.left",
+            "R" => "Car.right",
+            "B" => "Car.bottom",
+            "T" => "Car.top",
+            "P" => "Bump.pair",
+            kind => panic!("no such kind of event: {kind}"),
+        },
+        agent: format!("cars[{}]", row[2]),
+        other: if row[3] == "-1" { String::new() } else { format!("cars[{}]", row[3]) },
+    };
+    rows(&format!("ref_{n}.csv")).into_iter().map(event).collect()
+}
+
+fn run(n: usize, tolerance: f64) -> Run {
+    let case = Case::shipped("bumper.hy").param("N", n).param("data", format!("bumper_{n}.csv"));
+    case.tolerance(tolerance).run()
+}
+
+fn agrees(n: usize, tolerance: f64, time_error: f64, state_error: f64) {
+    let run = run(n, tolerance);
+    let reference = events(n);
+    assert_eq!(run.events.len(), reference.len(), "{:#?}", run.log());
+    for (event, expected) in run.events.iter().zip(&reference) {
+        assert_eq!(event.transition, expected.transition, "{event:?}");
+        assert_eq!((&event.agent, &event.other), (&expected.agent, &expected.other), "{event:?}");
+        let off = (event.time - expected.time).abs();
+        assert!(off <= time_error, "{event:?} is off by {off:e}");
+    }
+    for row in rows(&format!("ref_final_{n}.csv")) {
+        for (variable, expected) in ["x", "y", "th"].iter().zip(&row[1..]) {
+            let path = format!("cars[{}].{variable}", row[0]);
+            let expected: f64 = expected.parse().expect("a number");
+            let off = (run.value(&path) - expected).abs();
+            assert!(off <= state_error, "{path} = {} is not {expected}: off by {off:e}", run.value(&path));
+        }
+    }
+}
+
+#[test]
+fn loose_2() {
+    agrees(2, 1e-6, 1e-3, 1e-2);
+}
+
+#[test]
+fn loose_5() {
+    agrees(5, 1e-6, 1e-3, 1e-2);
+}
+
+#[test]
+fn loose_10() {
+    agrees(10, 1e-6, 1e-3, 1e-2);
+}
+
+#[test]
+fn loose_20() {
+    agrees(20, 1e-6, 1e-3, 1e-2);
+}
+
+#[test]
+fn loose_50() {
+    agrees(50, 1e-6, 1e-3, 1e-2);
+}
+
+#[test]
+fn tight_2() {
+    agrees(2, 1e-10, 1e-7, 1e-5);
+}
+
+#[test]
+fn tight_5() {
+    agrees(5, 1e-10, 1e-7, 1e-5);
+}
+
+#[test]
+fn tight_10() {
+    agrees(10, 1e-10, 1e-7, 1e-5);
+}
+
+#[test]
+fn tight_20() {
+    agrees(20, 1e-10, 1e-7, 1e-5);
+}
+
+#[test]
+fn tight_50() {
+    agrees(50, 1e-10, 1e-7, 1e-5);
+}
+
+#[test]
+fn who_is_not_in_an_event_is_not_cut() {
+    let run = run(20, 1e-6);
+    assert!(run.stats.cuts <= 2 * run.stats.events, "an event cuts those whom it writes: {:?}", run.stats);
+}

@@ -1,0 +1,464 @@
+//! How a test runs a model: through the doors of the floors, with both back ends, which must agree to the bit.
+
+use std::fmt::Write as _;
+use std::io;
+use std::sync::atomic::AtomicBool;
+
+use hyc::base::{Diagnostic, SourceMap};
+use hyc::calculus::system::System;
+use hyc::codegen::Backend;
+use hyc::codegen::program::Program;
+use hyc::model::ir::Model;
+use hyc::model::{Files, Settings};
+use hyc::runtime::limits::Limits;
+use hyc::runtime::observe::{Cell, End, FalseAssert, Last, Observer, Outcome, Progress, Row, Stats};
+
+/// A model with what the command line says about its run.
+#[derive(Default)]
+pub struct Case {
+    name: String,
+    text: String,
+    settings: Settings,
+    limits: Limits,
+}
+
+/// A row of the event log with names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fired {
+    pub time: f64,
+    pub micro: usize,
+    pub transition: String,
+    pub agent: String,
+    pub other: String,
+    pub from: String,
+    pub to: String,
+}
+
+/// A row of a trajectory.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sample {
+    pub time: f64,
+    pub micro: usize,
+    pub agent: String,
+    pub mode: String,
+    pub cells: Vec<f64>,
+}
+
+/// The state of an agent at the end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Final {
+    pub time: f64,
+    pub agent: String,
+    pub mode: String,
+    pub values: Vec<(String, f64)>,
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ended {
+    Until,
+    Stop { reason: Option<String>, by: String },
+    Error(Diagnostic),
+}
+
+/// All that a run told its observer.
+#[derive(Clone, Debug)]
+pub struct Run {
+    pub events: Vec<Fired>,
+    pub samples: Vec<Vec<Sample>>,
+    pub finals: Vec<Final>,
+    pub end: Ended,
+    pub time: f64,
+    pub stats: Stats,
+    pub false_asserts: Vec<FalseAssert>,
+    pub warnings: Vec<Diagnostic>,
+    pub sources: SourceMap,
+}
+
+/// Runs a model that must be right, and must end without an error.
+#[track_caller]
+pub fn simulate(text: &str) -> Run {
+    Case::new(text).run()
+}
+
+/// Runs a model that must be right, and must end in an error.
+#[track_caller]
+pub fn simulate_error(text: &str) -> (Run, Diagnostic) {
+    Case::new(text).run_error()
+}
+
+/// What is wrong with a model that must be wrong: the messages in full.
+#[track_caller]
+pub fn refused(text: &str) -> String {
+    let case = Case::new(text);
+    let mut sources = SourceMap::default();
+    let diagnostics = match case.model(&mut sources) {
+        Err(diagnostics) => diagnostics,
+        Ok(model) => match hyc::calculus::derive(&model) {
+            Err(diagnostics) => diagnostics,
+            Ok(_) => panic!("the model should be refused:\n{text}"),
+        },
+    };
+    assert!(diagnostics.iter().any(Diagnostic::is_error), "refused without an error: {diagnostics:#?}");
+    words(&diagnostics)
+}
+
+/// The text of diagnostics without places.
+pub fn words(diagnostics: &[Diagnostic]) -> String {
+    let mut text = String::new();
+    for diagnostic in diagnostics {
+        let _ = writeln!(text, "{}[{}]: {}", diagnostic.severity.word(), diagnostic.code, diagnostic.title);
+        for line in
+            diagnostic.labels.iter().map(|label| &label.text).chain(&diagnostic.notes).chain(&diagnostic.help)
+        {
+            let _ = writeln!(text, "  {line}");
+        }
+    }
+    text
+}
+
+/// Fails unless two numbers are as near as `tolerance`.
+#[track_caller]
+pub fn near(actual: f64, expected: f64, tolerance: f64) {
+    let difference = (actual - expected).abs();
+    assert!(difference <= tolerance, "{actual:?} is not {expected:?}: off by {difference:e} > {tolerance:e}");
+}
+
+/// Fails unless two lists of numbers are as near as `tolerance` and as long.
+#[track_caller]
+pub fn all_near(actual: &[f64], expected: &[f64], tolerance: f64) {
+    assert_eq!(actual.len(), expected.len(), "\n  actual {actual:?}\nexpected {expected:?}");
+    for (k, (actual, expected)) in actual.iter().zip(expected).enumerate() {
+        let difference = (actual - expected).abs();
+        assert!(difference <= tolerance, "number {k}: {actual:?} is not {expected:?}: off by {difference:e}");
+    }
+}
+
+/// Simpson's rule, as accurate as its many points.
+pub fn integral(f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
+    let n = 20_000;
+    let h = (to - from) / n as f64;
+    let inner: f64 = (1..n).map(|k| f(from + k as f64 * h) * if k % 2 == 1 { 4.0 } else { 2.0 }).sum();
+    (f(from) + inner + f(to)) * h / 3.0
+}
+
+impl Case {
+    /// A model given as text.
+    pub fn new(text: &str) -> Self {
+        Self { name: "test.hy".into(), text: text.into(), ..Self::default() }
+    }
+
+    /// A model of the folder `models`.
+    #[track_caller]
+    pub fn shipped(name: &str) -> Self {
+        let path = format!("{}/models/{name}", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+        Self { name: path, text, ..Self::default() }
+    }
+
+    /// `-p name=value`
+    pub fn param(mut self, name: &str, value: impl ToString) -> Self {
+        self.settings.params.push((name.into(), value.to_string()));
+        self
+    }
+
+    /// `--until`
+    pub fn until(mut self, until: f64) -> Self {
+        self.settings.until = Some(until);
+        self
+    }
+
+    /// `--tolerance`
+    pub fn tolerance(mut self, tolerance: f64) -> Self {
+        self.settings.tolerance = Some(tolerance);
+        self
+    }
+
+    /// `max_microsteps` and the like.
+    pub fn limits(mut self, limits: Limits) -> Self {
+        self.limits = limits;
+        self
+    }
+
+    /// The tree of the text.
+    pub fn ast(&self, sources: &mut SourceMap) -> Result<hyc::syntax::Ast, Vec<Diagnostic>> {
+        let file = sources.add(self.name.clone(), self.text.clone());
+        hyc::syntax::parse(file, &self.text)
+    }
+
+    /// The checked model.
+    pub fn model(&self, sources: &mut SourceMap) -> Result<Model, Vec<Diagnostic>> {
+        let ast = self.ast(sources)?;
+        let checked = hyc::model::check(&ast, sources, &mut Data, &self.settings);
+        checked.model.ok_or(checked.diagnostics)
+    }
+
+    /// Its equations.
+    #[track_caller]
+    pub fn system(&self) -> (Model, System, SourceMap) {
+        let mut sources = SourceMap::default();
+        let model = self.model(&mut sources).unwrap_or_else(|found| self.fail(&found));
+        let system = hyc::calculus::derive(&model).unwrap_or_else(|found| self.fail(&found));
+        (model, system, sources)
+    }
+
+    /// Runs the model with both back ends, which must agree.
+    #[track_caller]
+    pub fn run_any(&self) -> Run {
+        let (model, system, sources) = self.system();
+        let [interpreted, compiled] = [Backend::Interpreter, Backend::Jit].map(|backend| {
+            let program =
+                hyc::codegen::compile(system.clone(), backend).unwrap_or_else(|found| self.fail(&[found]));
+            self.observe(&model, &program, &sources)
+        });
+        let differences = interpreted.differences(&compiled);
+        assert!(differences.is_empty(), "interpreter and machine code differ:\n{differences}");
+        compiled
+    }
+
+    /// Runs a model that must not end in an error.
+    #[track_caller]
+    pub fn run(&self) -> Run {
+        let run = self.run_any();
+        if let Ended::Error(found) = &run.end {
+            panic!(
+                "the run ends in error at {}:\n{}\n{:#?}",
+                run.time,
+                words(std::slice::from_ref(found)),
+                run.log_end()
+            );
+        }
+        run
+    }
+
+    /// Runs a model that must end in an error.
+    #[track_caller]
+    pub fn run_error(&self) -> (Run, Diagnostic) {
+        let run = self.run_any();
+        match run.end.clone() {
+            Ended::Error(found) => (run, found),
+            end => {
+                panic!(
+                    "the run should end in an error, not by {end:?} at {}:\n{:#?}",
+                    run.time,
+                    run.log_end()
+                )
+            }
+        }
+    }
+
+    fn observe(&self, model: &Model, program: &Program, sources: &SourceMap) -> Run {
+        let mut recorder = Recorder::new(model);
+        let outcome = hyc::runtime::simulate(program, &self.limits, &AtomicBool::new(false), &mut recorder);
+        recorder.run(outcome, sources.clone())
+    }
+
+    #[track_caller]
+    fn fail(&self, found: &[Diagnostic]) -> ! {
+        panic!("{} has errors:\n{}", self.name, words(found))
+    }
+}
+
+/// The data files of the folder `models`.
+struct Data;
+
+impl Files for Data {
+    fn read(&mut self, path: &str) -> io::Result<String> {
+        std::fs::read_to_string(format!("{}/models/{path}", env!("CARGO_MANIFEST_DIR")))
+    }
+}
+
+/// Writes everything down.
+struct Recorder {
+    agents: Vec<String>,
+    variables: Vec<(Vec<String>, Vec<String>)>,
+    events: Vec<Fired>,
+    samples: Vec<Vec<Sample>>,
+    finals: Vec<Final>,
+}
+
+impl Recorder {
+    fn new(model: &Model) -> Self {
+        let population = &model.population;
+        let agents = (0..population.agents.len()).map(|agent| population.agent_name(agent)).collect();
+        let names =
+            |variables: &[hyc::model::ir::Variable]| variables.iter().map(|v| v.name.clone()).collect();
+        let variables = model.types.iter().map(|ty| (names(&ty.states), names(&ty.discretes))).collect();
+        let samples = model.run.records.iter().map(|_| Vec::new()).collect();
+        Self { agents, variables, events: Vec::new(), samples, finals: Vec::new() }
+    }
+
+    fn run(self, outcome: Outcome, sources: SourceMap) -> Run {
+        let end = match outcome.end {
+            End::Until => Ended::Until,
+            End::Stop { reason, by, .. } => Ended::Stop { reason, by },
+            End::Error(found) => Ended::Error(*found),
+            End::Interrupted => panic!("nobody interrupted the run"),
+            End::Output(error) => panic!("the recorder never fails: {error}"),
+        };
+        Run {
+            events: self.events,
+            samples: self.samples,
+            finals: self.finals,
+            end,
+            time: outcome.time,
+            stats: outcome.stats,
+            false_asserts: outcome.false_asserts,
+            warnings: outcome.warnings,
+            sources,
+        }
+    }
+}
+
+/// A cell as a number: booleans 1 and 0, agents by number, `none` -1, an empty cell NaN.
+fn number(cell: &Cell) -> f64 {
+    match cell {
+        Cell::Empty => f64::NAN,
+        Cell::Number(x) => *x,
+        Cell::Bool(b) => f64::from(u8::from(*b)),
+        Cell::Agent(agent) => agent.map_or(-1.0, |k| k as f64),
+    }
+}
+
+impl Observer for Recorder {
+    fn event(&mut self, event: &hyc::runtime::observe::Event<'_>) -> io::Result<()> {
+        let (from, to) = event.modes.unwrap_or(("", ""));
+        self.events.push(Fired {
+            time: event.time,
+            micro: event.micro,
+            transition: event.transition.into(),
+            agent: self.agents[event.agent].clone(),
+            other: event.other.map_or(String::new(), |other| self.agents[other].clone()),
+            from: from.into(),
+            to: to.into(),
+        });
+        Ok(())
+    }
+
+    fn sample(&mut self, record: usize, row: &Row<'_>) -> io::Result<()> {
+        self.samples[record].push(Sample {
+            time: row.time,
+            micro: row.micro,
+            agent: self.agents[row.agent].clone(),
+            mode: row.mode.into(),
+            cells: row.cells.iter().map(number).collect(),
+        });
+        Ok(())
+    }
+
+    fn last(&mut self, last: &Last<'_>) -> io::Result<()> {
+        let (states, discretes) = &self.variables[last.ty];
+        let states = states.iter().cloned().zip(last.states.iter().copied());
+        let discretes = discretes.iter().cloned().zip(last.discretes.iter().map(number));
+        self.finals.push(Final {
+            time: last.time,
+            agent: self.agents[last.agent].clone(),
+            mode: last.mode.into(),
+            values: states.chain(discretes).collect(),
+        });
+        Ok(())
+    }
+
+    fn progress(&mut self, _progress: &Progress) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Run {
+    /// The times at which a transition has fired.
+    pub fn times(&self, transition: &str) -> Vec<f64> {
+        self.events.iter().filter(|event| event.transition == transition).map(|event| event.time).collect()
+    }
+
+    /// The times at which a transition of one agent has fired.
+    pub fn times_of(&self, transition: &str, agent: &str) -> Vec<f64> {
+        let of_agent =
+            self.events.iter().filter(|event| event.transition == transition && event.agent == agent);
+        of_agent.map(|event| event.time).collect()
+    }
+
+    /// The log without times: `micro transition agent`, with `other` and modes where there are any.
+    pub fn log(&self) -> Vec<String> {
+        let line = |event: &Fired| {
+            let mut line = format!("{} {} {}", event.micro, event.transition, event.agent);
+            if !event.other.is_empty() {
+                let _ = write!(line, " {}", event.other);
+            }
+            if !event.to.is_empty() {
+                let _ = write!(line, " {}->{}", event.from, event.to);
+            }
+            line
+        };
+        self.events.iter().map(line).collect()
+    }
+
+    /// The last rows of the log, for messages.
+    fn log_end(&self) -> Vec<String> {
+        let log = self.log();
+        log[log.len().saturating_sub(8)..].to_vec()
+    }
+
+    /// A state or discrete variable at the end, as `agent.variable`.
+    #[track_caller]
+    pub fn value(&self, path: &str) -> f64 {
+        let (agent, variable) = path.rsplit_once('.').expect("agent.variable");
+        let values = &self.agent(agent).values;
+        let found = values.iter().find(|(name, _)| name == variable);
+        found.unwrap_or_else(|| panic!("no {variable} in {values:?}")).1
+    }
+
+    /// The mode of an agent at the end.
+    #[track_caller]
+    pub fn mode(&self, agent: &str) -> &str {
+        &self.agent(agent).mode
+    }
+
+    /// The end of an agent.
+    #[track_caller]
+    pub fn agent(&self, agent: &str) -> &Final {
+        self.finals.iter().find(|last| last.agent == agent).unwrap_or_else(|| panic!("no agent {agent}"))
+    }
+
+    /// One column of the first record for one agent, with its times.
+    pub fn column(&self, agent: &str, column: usize) -> Vec<(f64, f64)> {
+        let of_agent = self.samples[0].iter().filter(|sample| sample.agent == agent);
+        of_agent.map(|sample| (sample.time, sample.cells[column])).collect()
+    }
+
+    /// Everything that a run must not change with what watches it, to the bit, as text.
+    pub fn bits(&self) -> String {
+        let mut text = String::new();
+        for event in &self.events {
+            let _ = writeln!(text, "{:016x} {event:?}", event.time.to_bits());
+        }
+        for last in &self.finals {
+            let bits: Vec<u64> = last.values.iter().map(|(_, value)| value.to_bits()).collect();
+            let _ = writeln!(text, "{:016x} {last:?} {bits:x?}", last.time.to_bits());
+        }
+        let _ = writeln!(text, "{:?} at {:016x}", self.end, self.time.to_bits());
+        text
+    }
+
+    /// Where two runs of the same model differ; empty if nowhere.
+    fn differences(&self, other: &Run) -> String {
+        let all = |run: &Run| {
+            let mut text = run.bits();
+            for sample in run.samples.iter().flatten() {
+                let bits: Vec<u64> = sample.cells.iter().map(|value| value.to_bits()).collect();
+                let _ = writeln!(text, "{:016x} {sample:?} {bits:x?}", sample.time.to_bits());
+            }
+            let _ = writeln!(text, "{:?}\n{:?}\n{:?}", run.stats, run.false_asserts, run.warnings);
+            text
+        };
+        let (ours, theirs) = (all(self), all(other));
+        let mut text = String::new();
+        for (ours, theirs) in ours.lines().zip(theirs.lines()).filter(|(ours, theirs)| ours != theirs).take(5)
+        {
+            let _ = writeln!(text, "- {ours}\n+ {theirs}");
+        }
+        if text.is_empty() && ours.lines().count() != theirs.lines().count() {
+            text.push_str("one has more lines than the other\n");
+        }
+        text
+    }
+}

@@ -1,0 +1,18 @@
+//! Do the numbered rules of the language hold? Each sentence of each rule is a test that is named after it.
+//!
+//! What a test expects follows from the reference by hand; flows are polynomials where only events matter.
+
+mod rule_01_state;
+mod rule_02_arming;
+mod rule_03_instant;
+mod rule_04_micro_steps;
+mod rule_05_writing;
+mod rule_06_start;
+mod rule_07_reset;
+mod rule_08_claims;
+mod rule_11_time;
+mod rule_12_end;
+mod rule_13_coupling;
+mod rule_14_wakes;
+mod rule_15_kinks;
+mod rule_16_output;

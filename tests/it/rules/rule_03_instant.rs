@@ -1,0 +1,235 @@
+//! Rule 3: the first instant at which a condition is true, and conditions that are on their boundary.
+
+use std::f64::consts::PI;
+
+use crate::harness::{all_near, near, refused, simulate, simulate_error};
+
+/// An agent with x' = v (discrete), a guard that counts, and nothing else.
+fn counting(x: &str, v: &str, guard: &str, more: &str, until: f64) -> Vec<f64> {
+    simulate(&format!(
+        "agent A {{ state x = {x}  discrete v = {v}
+                    flow {{ x' = v }}
+                    hit: when {guard} {{ }}
+                    {more} }}
+         system {{ a = A() }}  run {{ until {until} }}"
+    ))
+    .times("A.hit")
+}
+
+#[test]
+fn rule_03_equality_of_reals_is_an_error() {
+    let words = refused(
+        "agent A { state x = 0  flow { x' = 1 }  go: when x == 1 { } }  system { a = A() }  run { until 1 }",
+    );
+    assert!(words.contains("crossing"), "{words}");
+    refused(
+        "agent A { state x = 0  flow { x' = 1 }  go: when x != 1 { } }  system { a = A() }  run { until 1 }",
+    );
+}
+
+#[test]
+fn rule_03_equality_is_exact_on_what_is_discrete() {
+    let run = simulate(
+        "agent A { discrete n: int = 0, up: bool = false
+                   tick: every 1 { n := n + 1  up := not up }
+                   three: when n == 3 { }
+                   notup: when up == false { }
+                   unequal: when n != 0 { } }
+         system { a = A() }  run { until 5 }",
+    );
+    assert_eq!(run.times("A.three"), [3.0]);
+    assert_eq!(run.times("A.notup"), [0.0, 2.0, 4.0]);
+    assert_eq!(run.times("A.unequal"), [1.0]);
+}
+
+#[test]
+fn rule_03_the_first_instant_is_the_infimum() {
+    all_near(&counting("0", "1", "x >= 1", "", 2.0), &[1.0], 1e-11);
+    all_near(&counting("0", "1", "x > 1", "", 2.0), &[1.0], 1e-11);
+    all_near(&counting("0", "1", "time > 1", "", 2.0), &[1.0], 1e-11);
+    assert_eq!(counting("0", "1", "time > 0", "", 2.0), [0.0]);
+    assert_eq!(counting("0", "1", "x > 0", "", 2.0), [0.0]);
+    assert_eq!(counting("0", "1", "time >= 2", "", 2.0), [2.0]);
+    all_near(&counting("0", "1", "x >= 2", "", 2.0), &[2.0], 1e-11);
+    assert_eq!(counting("0", "1", "time >= 2.001", "", 2.0), [0.0; 0]);
+}
+
+#[test]
+fn rule_03_strict_and_not_differ_only_where_a_guard_stays_on_its_boundary() {
+    assert_eq!(counting("0", "0", "x <= 0", "", 2.0), [0.0]);
+    assert_eq!(counting("0", "0", "x >= 0", "", 2.0), [0.0]);
+    assert_eq!(counting("0", "0", "x < 0", "", 2.0), [0.0; 0]);
+    assert_eq!(counting("0", "0", "x > 0", "", 2.0), [0.0; 0]);
+}
+
+#[test]
+fn rule_03_at_the_start_nothing_is_held() {
+    // on the boundary, moving out: true at t = 0, so it fires there; the strict one is never true
+    assert_eq!(counting("0", "1", "x <= 0", "", 2.0), [0.0]);
+    assert_eq!(counting("0", "-1", "x >= 0", "", 2.0), [0.0]);
+    assert_eq!(counting("0", "1", "x < 0", "", 2.0), [0.0; 0]);
+}
+
+#[test]
+fn rule_03_two_modes_that_share_a_boundary_neither_loop_nor_miss() {
+    // x = -cos t goes through zero at pi/2, 3 pi/2, 5 pi/2
+    for (up, down) in [(">=", "<="), (">", "<"), (">=", "<"), (">", "<=")] {
+        let run = simulate(&format!(
+            "agent A {{ state x = -1  flow {{ x' = sin(time) }}
+               initial mode Below {{ up: when x {up} 0 -> Above }}
+               mode Above {{ down: when x {down} 0 -> Below }} }}
+             system {{ a = A() }}  run {{ until 9  tolerance 1e-11 }}"
+        ));
+        assert_eq!(run.log(), ["0 A.up a Below->Above", "0 A.down a Above->Below", "0 A.up a Below->Above"]);
+        let times: Vec<f64> = run.events.iter().map(|event| event.time).collect();
+        all_near(&times, &[PI / 2.0, 3.0 * PI / 2.0, 5.0 * PI / 2.0], 1e-9);
+    }
+}
+
+#[test]
+fn rule_03_moving_out_is_held_until_it_has_been_false() {
+    // thrown up from the floor at 1 with v = 1, it is back at 3
+    let run = simulate(
+        "agent A { state x = 0, v = 0
+           initial mode Wait { flow { x' = 0  v' = 0 }  throw: after 1 -> Fly { v := 1 } }
+           mode Fly { flow { x' = v  v' = -1 }  land: when x <= 0 -> Rest { x := 0  v := 0 } }
+           mode Rest { flow { x' = 0  v' = 0 } } }
+         system { a = A() }  run { until 5 }",
+    );
+    all_near(&run.times("A.land"), &[3.0], 1e-11);
+}
+
+#[test]
+fn rule_03_the_second_rate_decides_where_the_first_is_zero() {
+    // let go upwards from rest: x = t^2/2 is leaving `x <= 0`; downwards it is moving in
+    let text = |acceleration: &str| {
+        format!(
+            "agent A {{ state x = 0, v = 0
+               initial mode Wait {{ flow {{ x' = 0  v' = 0 }}  go: after 1 -> Fly }}
+               mode Fly {{ flow {{ x' = v  v' = {acceleration} }}  land: when x <= 0 {{ }}  strict: when x < 0 {{ }} }} }}
+             system {{ a = A() }}  run {{ until 3 }}"
+        )
+    };
+    let up = simulate(&text("1"));
+    assert_eq!(up.log(), ["0 A.go a Wait->Fly"]);
+    let down = simulate(&text("-1"));
+    assert_eq!(down.times("A.land"), [1.0]);
+    assert_eq!(down.times("A.strict"), [1.0]);
+    let stay = simulate(&text("0"));
+    assert_eq!(stay.times("A.land"), [1.0]);
+    assert_eq!(stay.times("A.strict"), [0.0; 0]);
+}
+
+#[test]
+fn rule_03_held_until_the_rate_points_in() {
+    // B is entered at x = 0 with v = -1: `again` is held; in the same instant v becomes 1 and it fires
+    let run = simulate(
+        "agent A { state x = -1  discrete v = 1, flipped: bool = false
+           flow { x' = v }
+           initial mode First { up: when x >= 0 -> Second { v := -1 } }
+           mode Second { flip: when not flipped { v := 1  flipped := true }
+                         again: when x >= 0 { } } }
+         system { a = A() }  run { until 3 }",
+    );
+    assert_eq!(run.log(), ["0 A.up a First->Second", "1 A.flip a", "2 A.again a"]);
+    all_near(&run.times("A.again"), &[1.0], 1e-11);
+}
+
+#[test]
+fn rule_03_what_has_just_fired_on_its_boundary_is_held() {
+    // an elastic ball: the guard is on its boundary after each bounce
+    let run = simulate(
+        "agent Ball { state x = 0.5, v = 0  flow { x' = v  v' = -1 }  bounce: when x <= 0 { v := -v } }
+         system { ball = Ball() }  run { until 10 }",
+    );
+    all_near(&run.times("Ball.bounce"), &[1.0, 3.0, 5.0, 7.0, 9.0], 1e-10);
+}
+
+#[test]
+fn rule_03_a_guard_that_stays_true_after_firing_does_not_fire_again() {
+    // stopped on the wall, then on through it: never false
+    let run = simulate(
+        "agent A { state x = 1  discrete v = -1
+                   flow { x' = v }
+                   stay: when x <= 0 { v := 0 }
+                   drop: after 2 { v := -1 } }
+         system { a = A() }  run { until 4 }",
+    );
+    all_near(&run.times("A.stay"), &[1.0], 1e-11);
+    near(run.value("a.x"), -2.0, 1e-10);
+}
+
+#[test]
+fn rule_03_chattering_is_reported() {
+    let (run, found) = simulate_error(
+        "agent A { state x = -1
+           initial mode Up { flow { x' = 1 }  stop1: when x >= 0 -> Down }
+           mode Down { flow { x' = -1 }  stop2: when x <= 0 -> Up } }
+         system { a = A() }  run { until 3 }",
+    );
+    near(run.time, 1.0, 1e-6);
+    let words = crate::harness::words(&[found]);
+    assert!(words.contains("A.stop1") && words.contains("A.stop2"), "{words}");
+}
+
+#[test]
+fn rule_03_each_comparison_of_a_compound_guard_by_itself() {
+    // entered on the boundary of the first comparison (moving out) with the second true
+    let run = simulate(
+        "agent A { state x = -1, y = 0  flow { x' = if time < 3 then 1 else -1  y' = 1 }
+           initial mode First { up: when x >= 0 -> Second }
+           mode Second { down: when x <= 0 and y >= 0.5 -> First } }
+         system { a = A() }  run { until 6 }",
+    );
+    // up at 1; x = 2 at 3, then back: 0 at 5
+    assert_eq!(run.log(), ["0 A.up a First->Second", "0 A.down a Second->First"]);
+    all_near(&run.times("A.down"), &[5.0], 1e-11);
+    // moving out of one, into the other: `or` is true at once
+    let run = simulate(
+        "agent A { state x = -1, y = 1  flow { x' = 1  y' = -1 }
+           initial mode First { up: when x >= 0 -> Second }
+           mode Second { down: when x <= 0 or y <= 0 { } } }
+         system { a = A() }  run { until 3 }",
+    );
+    all_near(&run.times("A.down"), &[1.0], 1e-11);
+}
+
+#[test]
+fn rule_03_actions_read_the_state_at_the_root() {
+    let run = simulate(
+        "agent A { state x = 0  discrete at = 0, beyond: bool = false
+                   flow { x' = 1 }
+                   go: when x >= 1 { at := x  beyond := x >= 1 } }
+         system { a = A() }  run { until 2 }",
+    );
+    near(run.value("a.at"), 1.0, 1e-11);
+    assert_eq!(run.value("a.beyond"), 1.0, "on the true side");
+}
+
+#[test]
+fn rule_03_on_the_near_side_where_the_true_side_is_undefined() {
+    let run = simulate(
+        "agent A { state x = 0, y = 0  discrete at = 7
+           initial mode Go { flow { x' = 1  y' = sqrt(1 - x) }  end: when x >= 1 -> Done { at := sqrt(1 - x) } }
+           mode Done { flow { x' = 0  y' = 0 } } }
+         system { a = A() }  run { until 2  tolerance 1e-10 }",
+    );
+    all_near(&run.times("A.end"), &[1.0], 1e-9);
+    near(run.value("a.at"), 0.0, 1e-4);
+    near(run.value("a.y"), 2.0 / 3.0, 1e-7);
+}
+
+#[test]
+fn rule_03_the_tolerance_never_enters() {
+    // 1e-9 from the boundary is not on it, however loose the run
+    for tolerance in ["1e-2", "1e-10"] {
+        let run = simulate(&format!(
+            "agent A {{ state x = 0  flow {{ x' = 1 }}
+               initial mode First {{ go: when x >= 1 -> Second {{ x := 1e-9 }} }}
+               mode Second {{ low: when x <= 0 {{ }}  high: when x >= 1e-9 {{ }} }} }}
+             system {{ a = A() }}  run {{ until 3  tolerance {tolerance}  absolute 1 }}"
+        ));
+        assert_eq!(run.times("A.low"), [0.0; 0]);
+        all_near(&run.times("A.high"), &[1.0], 1e-11);
+    }
+}

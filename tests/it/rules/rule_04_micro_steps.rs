@@ -1,0 +1,295 @@
+//! Rule 4: what happens in one instant, and in which order.
+
+use crate::harness::{Case, all_near, near, refused, simulate, simulate_error, words};
+use hyc::runtime::limits::Limits;
+
+#[test]
+fn rule_04_higher_priority_first() {
+    let run = simulate(
+        "agent A {
+           initial mode Start { low: when time >= 1 -> Left  high: when time >= 1 priority 1 -> Right
+                                lower: when time >= 1 priority -1 -> Left }
+           mode Left { }
+           mode Right { } }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 A.high a Start->Right"]);
+    assert_eq!(run.mode("a"), "Right");
+}
+
+#[test]
+fn rule_04_priority_is_an_expression_of_the_state_before() {
+    let run = simulate(
+        "agent A(p: real, q: real) { discrete first = 0, second = 0, n = 0
+           one: when time >= 1 priority p { n := n + 1  first := n }
+           two: when time >= 1 priority q - n { n := n + 1  second := n } }
+         system { a = A(p = 1, q = 2)  b = A(p = 2, q = 1) }  run { until 2 }",
+    );
+    assert_eq!([run.value("a.first"), run.value("a.second")], [1.0, 0.0]);
+    assert_eq!([run.value("b.first"), run.value("b.second")], [0.0, 1.0]);
+}
+
+#[test]
+fn rule_04_the_agent_before_its_modes_then_in_order_of_declaration() {
+    let run = simulate(
+        "agent A { discrete n = 0
+           initial mode M { inner1: when time >= 1 { n := n + 1 }
+                            inner2: when time >= 1 { n := n + 1 } }
+           outer1: when time >= 1 { n := n + 1 }
+           outer2: when time >= 1 { n := n + 1 } }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 A.outer1 a", "1 A.outer2 a", "2 A.inner1 a", "3 A.inner2 a"]);
+    assert_eq!(run.value("a.n"), 4.0);
+}
+
+#[test]
+fn rule_04_interactions_before_modes() {
+    let run = simulate(
+        "agent A(id: int) { discrete n = 0
+           initial mode M { inner: when time >= 1 and id == 0 { n := 10*n + 1 } } }
+         interaction Meet(a: A, b: A) { pair: when time >= 1 and a.id < b.id { a.n := 10*a.n + 2 } }
+         system { a = A(id = 0)  b = A(id = 1) }  run { until 2 }",
+    );
+    assert_eq!(run.value("a.n"), 21.0);
+    assert_eq!(run.log(), ["0 Meet.pair a b", "1 A.inner a"]);
+}
+
+#[test]
+fn rule_04_agents_by_number() {
+    let run = simulate(
+        "agent A { discrete n = 0  go: when time >= 1 { n := 1 } }
+         system { a = A()  b = A()  c = A() }  run { until 2 }",
+    );
+    let agents: Vec<&str> = run.events.iter().map(|event| event.agent.as_str()).collect();
+    assert_eq!(agents, ["a", "b", "c"]);
+    assert!(run.events.iter().all(|event| event.micro == 0));
+    all_near(&run.times("A.go"), &[1.0; 3], 1e-12);
+}
+
+#[test]
+fn rule_04_one_transition_of_an_agent_in_a_micro_step() {
+    let run = simulate(
+        "agent A { discrete p = 0, q = 0
+           one: when time >= 1 { p := 1 }
+           two: when time >= 1 { q := 1 } }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 A.one a", "1 A.two a"]);
+}
+
+#[test]
+fn rule_04_what_was_passed_over_is_tested_again_on_the_new_state() {
+    let run = simulate(
+        "agent A { discrete open: bool = true
+           one: when time >= 1 { open := false }
+           two: when time >= 1 and open { } }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 A.one a"]);
+    // and what has become true joins the instant
+    let run = simulate(
+        "agent A { discrete open: bool = false
+           two: when time >= 1 and open { }
+           one: when time >= 1 { open := true } }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 A.one a", "1 A.two a"]);
+}
+
+#[test]
+fn rule_04_the_conditions_that_made_the_instant_count_as_true_in_it() {
+    // the instant is made by the flow at a root that rounds to either side
+    for k in 1..20 {
+        let run = simulate(&format!(
+            "agent A {{ state x = 0  discrete n = 0  flow {{ x' = {k}/7 }}
+               one: when x >= 0.3 {{ n := n + 1 }}
+               two: when x >= 0.3 {{ n := n + 1 }}
+               three: when x > 0.3 and n >= 2 {{ n := n + 1 }} }}
+             system {{ a = A() }}  run {{ until 4 }}"
+        ));
+        assert_eq!(run.log(), ["0 A.one a", "1 A.two a", "2 A.three a"], "k = {k}");
+        let first = run.events[0].time;
+        assert!(run.events.iter().all(|event| event.time == first));
+    }
+}
+
+#[test]
+fn rule_04_write_sets_are_disjoint_greedily() {
+    // 1 touches 0 and 2 at once; (0, 1) is taken, (1, 2) passed over and taken in the next micro-step
+    let run = simulate(
+        "agent A(at: real) { discrete n = 0 }
+         interaction Meet(a: A, b: A) {
+           pair: when time >= 1 and abs(a.at - b.at) <= 1 { a.n := a.n + 1  b.n := b.n + 1 }
+         }
+         system { a = A[4](at = index) }  run { until 2 }",
+    );
+    assert_eq!(
+        run.log(),
+        ["0 Meet.pair a[0] a[1]", "0 Meet.pair a[2] a[3]", "1 Meet.pair a[1] a[2]"],
+        "(2, 3) shares nothing with (0, 1)"
+    );
+    let counts: Vec<f64> = (0..4).map(|k| run.value(&format!("a[{k}].n"))).collect();
+    assert_eq!(counts, [1.0, 2.0, 2.0, 1.0]);
+}
+
+#[test]
+fn rule_04_an_if_writes_both_branches() {
+    // the interaction might write a and b, so their own transitions wait
+    let run = simulate(
+        "interaction Meet(a: A, b: A) {
+           pair: when time >= 1 and abs(a.n - b.n) <= 100 { if a.n + b.n > 1000 { a.n := 0  b.n := 0 } }
+         }
+         agent A { discrete n = 0  own: when time >= 1 { n := n + 1 } }
+         system { a = A()  b = A() }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 Meet.pair a b", "1 A.own a", "1 A.own b"]);
+}
+
+#[test]
+fn rule_04_right_hand_sides_read_the_state_before() {
+    let run = simulate(
+        "agent A { state x = 1, y = 2  discrete p = 3, q = 4
+           flow { x' = 0  y' = 0 }
+           swap: when time >= 1 { x := y  y := x  p := q  q := p } }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(
+        [run.value("a.x"), run.value("a.y"), run.value("a.p"), run.value("a.q")],
+        [2.0, 1.0, 4.0, 3.0]
+    );
+}
+
+#[test]
+fn rule_04_exit_and_transition_read_before_entry_reads_after() {
+    let run = simulate(
+        "agent A { discrete x = 1, seen_exit = 0, seen_go = 0, seen_entry = 0, left = 0
+           initial mode First {
+             exit { seen_exit := x  left := 5 }
+             go: when time >= 1 -> Second { seen_go := 100*left + x  x := 10 } }
+           mode Second { entry { seen_entry := 100*left + x } } }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(run.value("a.seen_exit"), 1.0);
+    assert_eq!(run.value("a.seen_go"), 1.0);
+    assert_eq!(run.value("a.seen_entry"), 510.0);
+}
+
+#[test]
+fn rule_04_conditions_of_actions_read_the_state_before() {
+    let run = simulate(
+        "agent A { discrete x = 1, y = 0
+           go: when time >= 1 { x := 10
+                                if x >= 5 { y := 1 } else if x >= 1 { y := 2 } else { y := 3 } } }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(run.value("a.y"), 2.0);
+}
+
+#[test]
+fn rule_04_a_variable_is_written_once_in_a_list() {
+    let words = refused(
+        "agent A { discrete x = 1  go: when time >= 1 { x := 2  x := 3 } }  system { a = A() }  run { until 2 }",
+    );
+    assert!(words.contains('x'), "{words}");
+}
+
+#[test]
+fn rule_04_a_cascade_at_one_instant() {
+    let run = simulate(
+        "agent A { discrete n = 0
+           initial mode M0 { go0: when time >= 1 -> M1 }
+           mode M1 { entry { n := n + 1 }  go1: when n >= 1 -> M2 }
+           mode M2 { entry { n := n + 1 }  go2: when n >= 2 -> M3 }
+           mode M3 { entry { n := n + 1 }  go3: when n >= 4 -> M0 } }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 A.go0 a M0->M1", "1 A.go1 a M1->M2", "2 A.go2 a M2->M3"]);
+    assert!(run.events.iter().all(|event| event.time == run.events[0].time));
+}
+
+#[test]
+fn rule_04_a_cycle_ends_at_the_limit_and_is_named() {
+    let (run, found) = simulate_error(
+        "agent A {
+           initial mode M { ping: when time >= 1 -> N }
+           mode N { pong: when time >= 1 -> M } }
+         system { a = A() }  run { until 2 }",
+    );
+    near(run.time, 1.0, 1e-11);
+    let words = words(&[found]);
+    assert!(words.contains("A.ping") && words.contains("A.pong"), "{words}");
+    assert!(words.contains("max_microsteps"), "{words}");
+    let firings = run.times("A.ping").len();
+    assert!((1000..=1001).contains(&firings), "{firings}");
+}
+
+#[test]
+fn rule_04_the_limit_is_of_one_transition_instance() {
+    // n counts to 1000 at one instant by one transition: allowed; 1001 is not
+    let text = |n: u32| {
+        format!(
+            "agent A {{ discrete n: int = 0
+               initial mode M {{ add: when time >= 1 and n < {n} -> M {{ n := n + 1 }} }} }}
+             system {{ a = A() }}  run {{ until 2 }}"
+        )
+    };
+    assert_eq!(simulate(&text(1000)).value("a.n"), 1000.0);
+    simulate_error(&text(1001));
+    let limits = Limits { microsteps_max: 10, ..Limits::default() };
+    Case::new(&text(11)).limits(limits.clone()).run_error();
+    assert_eq!(Case::new(&text(10)).limits(limits).run().value("a.n"), 10.0);
+}
+
+#[test]
+fn rule_04_roots_as_near_as_the_event_tolerance_are_one_instant() {
+    let run = simulate(
+        "agent A { discrete n = 0
+           late: when time >= 1.0000000000001 { n := n + 1 }
+           early: when time >= 1 { n := n + 1 } }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 A.late a", "1 A.early a"], "in the order of declaration");
+    assert_eq!(run.events[0].time, run.events[1].time);
+    // a root that is further away is an instant of its own
+    let run = simulate(
+        "agent A { discrete n = 0
+           late: when time >= 1.00000000001 { n := n + 1 }
+           early: when time >= 1 { n := n + 1 } }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 A.early a", "0 A.late a"]);
+}
+
+#[test]
+fn rule_04_a_root_near_a_scheduled_time_joins_it() {
+    let run = simulate(
+        "agent A { state x = 0  discrete n = 0
+           flow { x' = 1 }
+           tick: every 0.1 { n := n + 1 }
+           root: when x >= 0.7 { n := n + 1 } }
+         system { a = A() }  run { until 1 }",
+    );
+    let ticks = run.times("A.tick");
+    assert_eq!(ticks.len(), 10);
+    for (k, time) in ticks.iter().enumerate() {
+        assert_eq!(*time, (k + 1) as f64 * 0.1, "never moved");
+    }
+    assert_eq!(run.times("A.root"), [7.0 * 0.1]);
+}
+
+#[test]
+fn rule_04_independent_agents_have_instants_of_their_own() {
+    // a's second event at the instant waits for nobody: both agents have micro-steps 0 and 1
+    let run = simulate(
+        "agent A { discrete n = 0
+           one: when time >= 1 { n := n + 1 }
+           two: when time >= 1 { n := n + 1 } }
+         system { a = A()  b = A() }  run { until 2 }",
+    );
+    for agent in ["a", "b"] {
+        let micros: Vec<usize> = run.events.iter().filter(|e| e.agent == agent).map(|e| e.micro).collect();
+        assert_eq!(micros, [0, 1]);
+    }
+    all_near(&run.times("A.one"), &[1.0; 2], 1e-12);
+}

@@ -1,0 +1,88 @@
+//! Rule 8: invariants are the domain of the flow, asserts claims about the model.
+
+use std::f64::consts::PI;
+
+use crate::harness::{near, simulate, simulate_error, words};
+
+#[test]
+fn rule_08_a_false_invariant_ends_the_run_and_is_named() {
+    let (run, found) = simulate_error(
+        "agent A { state x = 2
+           initial mode Down { flow { x' = -1 }  invariant x >= 0 \"below the floor\" } }
+         system { p = A(x = 5)  q = A() }  run { until 4 }",
+    );
+    near(run.time, 2.0, 1e-10);
+    let words = words(&[found]);
+    assert!(["q", "Down", "below the floor"].iter().all(|word| words.contains(word)), "{words}");
+    near(run.value("p.x"), 3.0, 1e-9);
+}
+
+#[test]
+fn rule_08_a_transition_that_leaves_the_mode_saves_it() {
+    for guard in ["x >= 1", "x > 1"] {
+        let run = simulate(&format!(
+            "agent A {{ state x = 0
+               initial mode Up {{ flow {{ x' = 1 }}  invariant x <= 1  go: when {guard} -> Down }}
+               mode Down {{ flow {{ x' = -1 }} }} }}
+             system {{ a = A() }}  run {{ until 3 }}"
+        ));
+        near(run.value("a.x"), -1.0, 1e-10);
+    }
+}
+
+#[test]
+fn rule_08_an_invariant_is_of_its_mode() {
+    let run = simulate(
+        "agent A { state x = 0
+           initial mode Low { flow { x' = 1 }  invariant x <= 1  go: when x >= 1 -> High }
+           mode High { flow { x' = 1 }  invariant x >= 1 } }
+         system { a = A() }  run { until 3 }",
+    );
+    near(run.value("a.x"), 3.0, 1e-11);
+}
+
+#[test]
+fn rule_08_a_reset_can_break_an_invariant() {
+    let (run, _) = simulate_error(
+        "agent A { state x = 1  flow { x' = 0 }  invariant x >= 0  tick: after 1.5 { x := -1 } }
+         system { a = A() }  run { until 4 }",
+    );
+    assert_eq!(run.time, 1.5);
+}
+
+#[test]
+fn rule_08_an_invariant_over_another_agent() {
+    let (run, _) = simulate_error(
+        "agent A(v: real) { link lead: A  state x  flow { x' = v }
+           invariant not lead or lead.x > x }
+         system { a = A(v = 1, x = 3)  b = A(v = 2, x = 0, lead = a) }  run { until 10 }",
+    );
+    near(run.time, 3.0, 1e-10);
+}
+
+#[test]
+fn rule_08_an_assert_never_changes_the_run() {
+    // x = sin t is above 1/2 on [pi/6, 5 pi/6] and [13 pi/6, 17 pi/6]
+    let text = |assert: &str| {
+        format!(
+            "agent A {{ state x = 0  flow {{ x' = cos(time) }}  {assert}  low: when x <= -0.5 {{ }} }}
+             system {{ a = A() }}  run {{ until 10  tolerance 1e-10 }}"
+        )
+    };
+    let run = simulate(&text("assert x <= 0.5 \"too high\""));
+    let without = simulate(&text(""));
+    assert_eq!(run.bits(), without.bits());
+    let [found] = run.false_asserts.as_slice() else { panic!("{:?}", run.false_asserts) };
+    near(found.time, PI / 6.0, 1e-8);
+    assert_eq!(found.message.as_deref(), Some("too high"));
+    assert_eq!(found.count, 2);
+}
+
+#[test]
+fn rule_08_a_true_assert_that_touches() {
+    let run = simulate(
+        "agent A { state x = 0  flow { x' = 1 }  assert (x - 1)^2 >= 0  assert x >= 0 }
+         system { a = A() }  run { until 2 }",
+    );
+    assert!(run.false_asserts.is_empty(), "{:?}", run.false_asserts);
+}
