@@ -1,4 +1,35 @@
 //! From a program to what happens: events and samples, told to an observer.
+//!
+//! In: a `Program`, limits, a flag that interrupts. Out: an [`observe::Outcome`]; on the way, everything that happens, in
+//! order of time. Promised: the same bytes for the same program, on either back end.
+//!
+//! # The rules of time and events
+//!
+//! Numbered as in the language reference (`docs/LANGUAGE.md`), each with its place here; the tests of rule N are
+//! `rule_NN_...` in `tests/it/rules/`.
+//!
+//! | rule | in a sentence | where |
+//! |---|---|---|
+//! | 1 state | states flow, discretes stay, lets follow, links refer | `population` |
+//! | 2 arming | a guard fires at the first instant it is armed and true; firing disarms, being false arms | `arm`, `truth` |
+//! | 3 the instant | the infimum of the times at which the condition is true; on its boundary the rates decide | `solve::roots`, `arm` |
+//! | 4 micro-steps | one instant is a sequence of micro-steps, each on the state before it | `instant`, `gather` |
+//! | 5 who may write | agents write themselves, interactions their participants | `act`, `guards` |
+//! | 6 t = 0 | locks, groups, entry actions, arming, micro-steps, claims | `masim` |
+//! | 7 after a reset | only what a write concerns restarts | `act` |
+//! | 8 claims | a false invariant ends the run, a false assert is reported | `instant` |
+//! | 11 time | `after` and `every` count from entry, as products | `arm`, `gather` |
+//! | 12 end | `until`, `stop`, errors; the state of all at that time | `masim`, `repetition` |
+//! | 13 coupling | who reads another's states in its flow steps with it | `groups` |
+//! | 14 reads across agents | a write wakes the guards that read it, and no others | `arm` |
+//! | 15 kinks | a step never spans a surface at which a branch of the flow changes | `advance` |
+//! | 16 output | recording changes nothing | `record` |
+//!
+//! # The engine
+//!
+//! `masim` is the loop: certify what the smallest clock allows, write samples, execute the earliest instant, else
+//! advance the group that lags most. `certify` excludes or isolates roots on the agents' dense output, or puts a
+//! comparison to sleep by an enclosure of the flows (`enclose`).
 
 mod solve;
 pub mod limits;
