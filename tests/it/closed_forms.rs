@@ -5,6 +5,31 @@ use std::f64::consts::PI;
 use crate::harness::{Case, all_near, near, simulate};
 
 #[test]
+fn bounces_of_a_ball() {
+    let run = Case::shipped("bouncing_ball.hy").tolerance(1e-10).run();
+    // t_n = t_1 (1 + 2 (e + ... + e^(n - 1)))
+    let (first, e) = ((2.0f64 / 9.81).sqrt(), 0.8f64);
+    let mut expected = Vec::new();
+    let (mut time, mut flight) = (first, 2.0 * first * e);
+    while time <= 4.0 {
+        expected.push(time);
+        time += flight;
+        flight *= e;
+    }
+    assert_eq!(expected.len(), 19);
+    all_near(&run.times("Ball.bounce"), &expected, 1e-9);
+}
+
+#[test]
+fn a_ball_on_the_moon_from_another_height() {
+    let case = Case::shipped("bouncing_ball.hy").param("g", 1.62).param("h", 2).param("e", 0.5);
+    let run = case.until(4.5).run();
+    let first = (4.0f64 / 1.62).sqrt();
+    let expected = [first, 2.0 * first, 2.5 * first, 2.75 * first];
+    all_near(&run.times("Ball.bounce")[..4], &expected[..4], 1e-9);
+}
+
+#[test]
 fn switching_times_of_a_thermostat() {
     let run = Case::shipped("thermostat.hy").tolerance(1e-10).run();
     let (warming, cooling) = ((21.0f64 / 19.0).ln(), (11.0f64 / 9.0).ln());

@@ -56,6 +56,22 @@ fn dips_of_many_widths() {
 }
 
 #[test]
+fn a_pair_that_grazes() {
+    // two cars pass at a distance of 1; the guard's radius is a little more or less
+    let text = |r: &str| {
+        format!(
+            "agent Car(v: real) {{ state x, y  flow {{ x' = v  y' = 0 }} }}
+             interaction Near(a: Car, b: Car) {{ pair: when (a.x - b.x)^2 + (a.y - b.y)^2 <= {r}^2 {{ }} }}
+             system {{ a = Car(v = 1, x = -5, y = 0)  b = Car(v = -1, x = 5, y = 1) }}  run {{ until 10 }}"
+        )
+    };
+    assert_eq!(simulate(&text("0.999999")).log(), [""; 0]);
+    // 4 (t - 5)^2 + 1 = r^2
+    let r: f64 = 1.000001;
+    all_near(&simulate(&text("1.000001")).times("Near.pair"), &[5.0 - (r * r - 1.0).sqrt() / 2.0], 1e-10);
+}
+
+#[test]
 fn a_fast_guard_on_a_constant_state_fires_every_time() {
     let run = simulate(
         "agent A { state c = 1  flow { c' = 0 }  hit: when c*sin(50*time) <= 0 { } }

@@ -88,6 +88,20 @@ fn a_jam_on_the_highway() {
 }
 
 #[test]
+fn the_ball_loses_energy_at_its_bounces_only() {
+    let run = Case::shipped("bouncing_ball.hy").run();
+    let energy = |k: usize, x: &[(f64, f64)], v: &[(f64, f64)]| v[k].1 * v[k].1 / 2.0 + 9.81 * x[k].1;
+    let (x, v) = (run.column("ball", 0), run.column("ball", 1));
+    assert_eq!(x.len(), 401);
+    let bounces = run.times("Ball.bounce");
+    for k in 0..x.len() {
+        assert!(x[k].1 >= -1e-9);
+        let before = bounces.iter().filter(|time| **time <= x[k].0).count();
+        near(energy(k, &x, &v), 9.81 * 0.64f64.powi(i32::try_from(before).expect("few")), 1e-9);
+    }
+}
+
+#[test]
 fn the_thermostat_keeps_its_room() {
     let run = Case::shipped("thermostat.hy").run();
     let inside = run.column("room", 0).iter().all(|(_, t)| (19.0 - 1e-9..=21.0 + 1e-9).contains(t));

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::harness::{near, simulate, simulate_error, words};
+use crate::harness::{all_near, near, simulate, simulate_error, words};
 
 #[test]
 fn rule_08_a_false_invariant_ends_the_run_and_is_named() {
@@ -28,6 +28,25 @@ fn rule_08_a_transition_that_leaves_the_mode_saves_it() {
         ));
         near(run.value("a.x"), -1.0, 1e-10);
     }
+}
+
+#[test]
+fn rule_08_on_the_boundary_it_is_false_only_if_the_flow_leads_out() {
+    let run = simulate(
+        "agent Ball { state x = 0.5, v = 0  flow { x' = v  v' = -1 }
+           invariant x >= 0
+           bounce: when x <= 0 { v := -v } }
+         system { ball = Ball() }  run { until 10 }",
+    );
+    all_near(&run.times("Ball.bounce"), &[1.0, 3.0, 5.0, 7.0, 9.0], 1e-10);
+    let (run, _) = simulate_error(
+        "agent Ball { state x = 0.5, v = 0  flow { x' = v  v' = -1 }
+           invariant x >= 0
+           bounce: when x <= 0 { v := 0.5*v } }
+         system { ball = Ball() }  run { until 10 }",
+    );
+    near(run.time, 1.0, 1e-10);
+    assert_eq!(run.times("Ball.bounce").len(), 1);
 }
 
 #[test]
@@ -76,6 +95,27 @@ fn rule_08_an_assert_never_changes_the_run() {
     near(found.time, PI / 6.0, 1e-8);
     assert_eq!(found.message.as_deref(), Some("too high"));
     assert_eq!(found.count, 2);
+}
+
+#[test]
+fn rule_08_an_assert_of_a_moment() {
+    // false for a moment between two micro-steps is not false: claims are about the end of the instant
+    let run = simulate(
+        "agent A { discrete n = 0
+           assert n == 0
+           up: after 1 { n := 1 }
+           down: when n == 1 { n := 0 } }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 A.up a", "1 A.down a"]);
+    assert!(run.false_asserts.is_empty(), "{:?}", run.false_asserts);
+    // a guard of flows that dips for 1e-3 is found
+    let run = simulate(
+        "agent A { state x = 0  flow { x' = 1 }  assert (x - 1)*(x - 1.001) >= 0 }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(run.false_asserts.len(), 1);
+    near(run.false_asserts[0].time, 1.0, 1e-10);
 }
 
 #[test]
