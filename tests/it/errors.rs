@@ -1,5 +1,6 @@
 //! Has every error a code, every code an explanation, and every explanation an example that has the error and one that
-//! does not? The cases are the examples of `docs/ERRORS.md`; what is said about each lies in `errors/`.
+//! does not? The cases are the examples of `docs/ERRORS.md`; what is said about those that have no case of their own in `errors/`
+//! lies there too.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -18,10 +19,8 @@ use hyc::runtime::observe::End;
 use hyc::{calculus, model, runtime, syntax};
 
 /// Codes of limits and of machines that no short example shows.
-const WITHOUT_EXAMPLE: [&str; 11] = [
-    "HY0102", "HY0119", "HY0292", "HY0293", "HY0294", "HY0295", "HY0304", "HY0305", "HY0306", "HY0401",
-    "HY0402",
-];
+const WITHOUT_EXAMPLE: [&str; 10] =
+    ["HY0102", "HY0119", "HY0292", "HY0294", "HY0295", "HY0304", "HY0305", "HY0306", "HY0401", "HY0402"];
 
 /// A model that never ends is a failure of this test, not of the reader's patience.
 const STEPS_MAX: u64 = 100_000;
@@ -145,13 +144,33 @@ fn every_good_example_is_sound() {
 
 #[test]
 fn every_message_is_as_it_was() {
-    for entry in &explanations() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/it/errors");
+    let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let with_case: BTreeSet<String> =
+        names.filter(|name| name.ends_with(".hy")).map(|name| name[..6].to_string()).collect();
+    for entry in explanations().iter().filter(|entry| !with_case.contains(entry.code)) {
         let Some(example) = example(entry) else { continue };
         let (sources, diagnostics) = diagnose(&example.bad, &example);
         insta::with_settings!({ snapshot_path => "errors", prepend_module_to_snapshot => false, omit_expression => true }, {
-            insta::assert_snapshot!(entry.code, render(&sources, &diagnostics, Colours::None));
+            insta::assert_snapshot!(entry.code, without_numbers(&render(&sources, &diagnostics, Colours::None)));
         });
     }
+}
+
+/// The text with dots for each number among the notes: no number of a trajectory belongs into a snapshot.
+fn without_numbers(text: &str) -> String {
+    let is_note = |line: &str| line.trim_start().starts_with("= ") && !line.contains("help:");
+    let in_number = |c: char| c.is_ascii_digit() || "+-.e".contains(c);
+    let mut lines = Vec::new();
+    for line in text.lines() {
+        let words = line.split(' ').map(|word| {
+            let number = word.trim_end_matches([',', ':', ';']);
+            let is_number = number.contains(|c: char| c.is_ascii_digit()) && number.chars().all(in_number);
+            if is_note(line) && is_number { word.replacen(number, "...", 1) } else { word.to_string() }
+        });
+        lines.push(words.collect::<Vec<_>>().join(" "));
+    }
+    lines.join("\n")
 }
 
 #[test]
