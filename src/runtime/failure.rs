@@ -199,7 +199,7 @@ impl Reason {
                     .label(*span, "this transition")
                     .note(place.note())
                     .note(format!("the cycle: {}", cycle.join(", ")))
-                    .help("make a guard of the cycle false by its action, or raise `max_microsteps`")
+                    .help("make a guard of the cycle false by its action, or raise the limit: `--limit max_microsteps=N`")
             }
             Reason::Zeno { place, cycle, count, limit_time, span } => {
                 Diagnostic::error("HY0506", format!("Zeno behaviour: {count} events in a time too short to resolve"))
@@ -217,13 +217,13 @@ impl Reason {
             }
             Reason::StepLimit { time, limit } => {
                 Diagnostic::error("HY0508", format!("more than {limit} steps")).note(format!("at t = {time}")).help(
-                    "a larger tolerance or an earlier `until` needs fewer steps; the limit is called `max_steps`",
+                    "a larger tolerance or an earlier `until` needs fewer steps; or raise the limit: `--limit max_steps=N`",
                 )
             }
             Reason::GuardLimit { needed, limit } => {
                 Diagnostic::error("HY0509", format!("{needed} guard instances are more than {limit}"))
                     .note("every pair of agents of an interaction or a quantifier counts")
-                    .help("use fewer agents; the limit is called `max_guards`")
+                    .help("use fewer agents, or raise the limit: `--limit max_guards=N`")
             }
             Reason::BadDelay { place, value, span } => {
                 Diagnostic::error("HY0510", format!("a delay or period of {value} s"))

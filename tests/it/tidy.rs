@@ -122,6 +122,26 @@ fn what_a_floor_must_not_know_it_does_not_name() {
     hold("what belongs to one place is named in no other", broken);
 }
 
+#[test]
+fn output_knows_only_what_the_runtime_tells_and_numerics_know_no_agent() {
+    let may_use: [(&str, &[&str]); 2] = [
+        ("output/", &["crate::base", "crate::runtime::observe"]),
+        ("runtime/solve/", &["crate::math", "crate::runtime::solve"]),
+    ];
+    let mut broken = Vec::new();
+    for source in sources().iter().filter(|source| !source.is_test()) {
+        let Some((_, allowed)) = may_use.iter().find(|(place, _)| source.path.starts_with(place)) else {
+            continue;
+        };
+        for (k, _) in source.code.match_indices("crate::") {
+            if !allowed.iter().any(|path| source.code[k..].starts_with(path)) {
+                broken.push(format!("{} uses {}", source.path, source.code[k..].lines().next().unwrap()));
+            }
+        }
+    }
+    hold("these places use nothing else", broken);
+}
+
 /// Whether the text has the word, not as part of a longer one to the left.
 fn contains_word(text: &str, word: &str) -> bool {
     text.match_indices(word).any(|(k, _)| {
