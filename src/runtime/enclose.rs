@@ -1,8 +1,9 @@
 //! How long a comparison cannot change: it sleeps until then (I6).
 //!
 //! Over [t, t + H] the states of a group stay in a box B if x(t) + [0, H] f(B) lies in B (Picard's operator maps B into
-//! itself). The box is valid until an event or a kink in the group; whoever writes an agent wakes what reads it. If g
-//! keeps its sign on the boxes of the agents it reads, it cannot change before t + H.
+//! itself). Then f(B) bounds their rates, and x(s) + [0, h] f(B) their states over any [s, s + h] within [t, t + H]. This
+//! is valid until an event or a kink in the group; whoever writes an agent wakes what reads it. If g keeps its sign on
+//! the boxes of the agents it reads, it cannot change before s + h.
 
 use smallvec::SmallVec;
 
@@ -13,27 +14,32 @@ use crate::runtime::population::{ABSENT, Agents, Slots};
 use crate::runtime::present::Boxes;
 use crate::runtime::solve::control::Accuracy;
 
-/// Boxes of groups, kept for those who ask again.
+/// Bounds of rates of groups, kept for those who ask again.
 pub struct Enclosures {
     accuracy: Accuracy,
     kept: Vec<Vec<Kept>>,
     registers: Vec<Interval>,
+    /// Scratch: the boxes of the slots one after the other, and a state.
+    boxes: Vec<Interval>,
+    state: Vec<f64>,
     absent: Vec<Interval>,
     absent_aux: Vec<f64>,
     /// Right-hand sides and guards evaluated over intervals.
     pub ranges: u64,
 }
 
-/// A box of one group.
+/// Bounds of the rates of one group over a stretch of time.
 #[derive(Clone, Debug)]
 struct Kept {
     version: u32,
     start: f64,
     end: f64,
-    states: Vec<Interval>,
+    rates: Vec<Interval>,
 }
 
-/// How many boxes are kept for a group.
+/// Bounds over a stretch this many times longer than what is asked for are good enough.
+const LOOSE: f64 = 16.0;
+/// How many bounds are kept for a group.
 const KEPT_MAX: usize = 6;
 /// How often a box is made larger before its horizon is given up.
 const TRIES: usize = 4;
@@ -52,6 +58,8 @@ impl Enclosures {
             accuracy,
             kept: Vec::new(),
             registers: Vec::new(),
+            boxes: Vec::new(),
+            state: Vec::new(),
             absent: vec![Interval::WHOLE; width],
             absent_aux: vec![f64::NAN; width],
             ranges: 0,
@@ -70,6 +78,7 @@ impl Enclosures {
         horizon: f64,
     ) -> Option<Interval> {
         let mut places: SmallVec<[(usize, usize, usize); 3]> = SmallVec::new();
+        self.boxes.clear();
         for &slot in used {
             let agent = slots[slot];
             if agent == ABSENT || agents.agents[agent].states.is_empty() {
@@ -78,8 +87,9 @@ impl Enclosures {
             let group = agents.agents[agent].group;
             let kept = self.enclose(agents, group, &groups[group], t, horizon)?;
             let before = groups[group].members.iter().take_while(|&&member| member != agent);
-            let first = before.map(|&member| agents.agents[member].states.len()).sum();
-            places.push((slot, kept, first));
+            let first: usize = before.map(|&member| agents.agents[member].states.len()).sum();
+            places.push((slot, self.boxes.len(), agents.agents[agent].states.len()));
+            self.add_box(agents, agent, group, kept, first, t, horizon);
         }
         let boxes: Boxes<'_> = (0..slots.len())
             .map(|slot| {
@@ -89,10 +99,7 @@ impl Enclosures {
                     return AgentBox { states: row, rates: row, accelerations: row, aux: &self.absent_aux };
                 }
                 let states = match places.iter().find(|place| place.0 == slot) {
-                    Some(&(_, kept, first)) => {
-                        let group = agents.agents[agent].group;
-                        &self.kept[group][kept].states[first..first + agents.agents[agent].states.len()]
-                    }
+                    Some(&(_, first, n)) => &self.boxes[first..first + n],
                     None => &[],
                 };
                 AgentBox { states, rates: &[], accelerations: &[], aux: &agents.agents[agent].aux }
@@ -104,7 +111,34 @@ impl Enclosures {
         Some(out[0])
     }
 
-    /// A box of a group's states over [t, t + horizon]: its place among those kept.
+    /// Appends the box of an agent's states over [t, t + horizon].
+    #[allow(clippy::too_many_arguments)]
+    fn add_box(
+        &mut self,
+        agents: &Agents<'_>,
+        agent: usize,
+        group: usize,
+        kept: usize,
+        first: usize,
+        t: f64,
+        horizon: f64,
+    ) {
+        let agent = &agents.agents[agent];
+        self.state.resize(agent.states.len(), 0.0);
+        if t == agent.segment.end {
+            self.state.copy_from_slice(&agent.states);
+        } else {
+            agent.segment.states(t, &mut self.state);
+        }
+        let span = Interval { lo: 0.0, hi: horizon };
+        for (k, &x) in self.state.iter().enumerate() {
+            let bound = Interval { lo: x, hi: x }.add(span.mul(self.kept[group][kept].rates[first + k]));
+            let bound = self.padded(bound);
+            self.boxes.push(bound);
+        }
+    }
+
+    /// Bounds of a group's rates over [t, t + horizon]: their place among those kept.
     fn enclose(
         &mut self,
         agents: &Agents<'_>,
@@ -117,25 +151,26 @@ impl Enclosures {
             self.kept.resize(number + 1, Vec::new());
         }
         let kept = &mut self.kept[number];
-        kept.retain(|kept| kept.version == group.version);
+        kept.retain(|kept| kept.version == group.version && kept.end > t);
         let fits = |kept: &Kept| {
-            kept.start <= t && kept.end >= t + horizon && kept.end - kept.start <= 4.0 * horizon
+            kept.start <= t && kept.end >= t + horizon && kept.end - kept.start <= LOOSE * horizon
         };
         if let Some(found) = kept.iter().position(fits) {
             return Some(found);
         }
-        let states = self.picard(agents, group, t, 1.5 * horizon)?;
+        let rates = self.picard(agents, group, t, 1.5 * horizon)?;
         let kept = &mut self.kept[number];
-        let new = Kept { version: group.version, start: t, end: t + 1.5 * horizon, states };
+        let new = Kept { version: group.version, start: t, end: t + 1.5 * horizon, rates };
         if kept.len() < KEPT_MAX {
             kept.push(new);
             return Some(kept.len() - 1);
         }
-        let oldest = (0..kept.len()).min_by(|&a, &b| kept[a].start.total_cmp(&kept[b].start)).unwrap_or(0);
+        let oldest = (0..kept.len()).min_by(|&a, &b| kept[a].end.total_cmp(&kept[b].end)).unwrap_or(0);
         kept[oldest] = new;
         Some(oldest)
     }
 
+    /// Bounds of the rates over a box that Picard's operator maps into itself; none if none is found.
     fn picard(&mut self, agents: &Agents<'_>, group: &Group, t: f64, horizon: f64) -> Option<Vec<Interval>> {
         let mut start = Vec::new();
         for &member in &group.members {
@@ -153,11 +188,19 @@ impl Enclosures {
         let mut guess: Vec<Interval> =
             start.iter().map(|&x| self.padded(Interval { lo: x, hi: x })).collect();
         for _ in 0..TRIES {
-            let image = self.image(agents, group, &guess, &start, time, span)?;
+            let rates = self.rates(agents, group, &guess, time);
+            let image: Vec<Interval> = start
+                .iter()
+                .zip(&rates)
+                .map(|(&x, &rate)| Interval { lo: x, hi: x }.add(span.mul(rate)))
+                .collect();
+            if !image.iter().all(|bound| bound.is_finite()) {
+                return None;
+            }
             let inside =
                 image.iter().zip(&guess).all(|(image, guess)| guess.lo <= image.lo && image.hi <= guess.hi);
             if inside {
-                return Some(image.into_iter().map(|bound| self.padded(bound)).collect());
+                return Some(rates);
             }
             guess = image
                 .iter()
@@ -168,17 +211,15 @@ impl Enclosures {
         None
     }
 
-    /// x(t) + [0, H] f(box); none where f is not bounded.
-    fn image(
+    /// f(box).
+    fn rates(
         &mut self,
         agents: &Agents<'_>,
         group: &Group,
         guess: &[Interval],
-        start: &[f64],
         time: Interval,
-        span: Interval,
-    ) -> Option<Vec<Interval>> {
-        let mut image = Vec::with_capacity(start.len());
+    ) -> Vec<Interval> {
+        let mut all = Vec::with_capacity(guess.len());
         for &member in &group.members {
             let flow = agents.flow(member);
             let slots = agents.slots(&flow.frame, &[member]);
@@ -209,15 +250,9 @@ impl Enclosures {
                 .collect();
             self.ranges += 1;
             agents.program.kernel(flow.rates).range(&boxes, time, &mut self.registers, &mut rates);
-            for rate in rates {
-                let bound = Interval { lo: start[image.len()], hi: start[image.len()] }.add(span.mul(rate));
-                if !bound.is_finite() {
-                    return None;
-                }
-                image.push(bound);
-            }
+            all.extend_from_slice(&rates);
         }
-        Some(image)
+        all
     }
 
     /// Room for what the integration may be off by.

@@ -3,7 +3,7 @@
 //! A step is accepted when max over i of |err_i| / (absolute + tolerance |x_i|) <= 1. The next step follows the
 //! proportional-integral rule of Gustafsson (1991), as in Hairer & Wanner, Solving ODEs II, IV.2.
 
-use crate::math::elementary::pow;
+use crate::math::elementary::{exp, log};
 
 /// The accuracy asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,4 +60,9 @@ impl Control {
     pub fn rejected(&self, norm: f64, order: f64) -> f64 {
         if norm.is_finite() { (SAFETY * pow(norm, -1.0 / order)).clamp(SHRINK, 0.9) } else { 0.25 }
     }
+}
+
+/// x^y for x > 0, near enough for a step size.
+fn pow(x: f64, y: f64) -> f64 {
+    exp(y * log(x))
 }
