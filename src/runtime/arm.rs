@@ -130,7 +130,8 @@ impl<'p> Engine<'p, '_> {
             // Off its boundary, and nothing that it reads has changed: only its rates have.
             before.truth
         } else {
-            let rounding = self.rounding(kernel, &slots);
+            // Where g can jump, a bound of its rounding may be the height of the jump: then its sign is taken as it is.
+            let rounding = if atom.smooth { self.rounding(kernel, &slots) } else { 0.0 };
             let clear = g.abs() > if unchanged { before.slack.max(rounding) } else { rounding };
             match rule {
                 Rule::Rates => self.decide(index, g, rounding, &slots),
@@ -177,7 +178,7 @@ impl<'p> Engine<'p, '_> {
             return g < 0.0;
         }
         state.slack = band;
-        let bounds = self.jet_rounding(kernel, slots);
+        let bounds = if atom.smooth { self.jet_rounding(kernel, slots) } else { [0.0; 3] };
         for order in 1..3 {
             if jet[order].abs() > bounds[order] {
                 return jet[order] < 0.0;

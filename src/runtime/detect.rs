@@ -97,6 +97,10 @@ impl Curve for AtomCurve<'_, '_> {
         out
     }
 
+    fn smooth(&self) -> bool {
+        self.atom.smooth
+    }
+
     fn jet_range(&mut self, s: f64, e: f64) -> [Interval; 3] {
         self.rows.ranges += 1;
         let width = self.width;

@@ -16,6 +16,8 @@ use crate::runtime::solve::{time_resolution, ulp};
 pub trait Curve {
     /// g, g', g'' at t; g'' may be NaN where it is not known.
     fn jet(&mut self, t: f64) -> [f64; 3];
+    /// Whether g cannot jump. Where it can, only its own bounds hold over a stretch, and no rounding is told from a jump.
+    fn smooth(&self) -> bool;
     /// Bounds of g, g', g'' over [s, e].
     fn jet_range(&mut self, s: f64, e: f64) -> [Interval; 3];
 }
@@ -97,6 +99,9 @@ impl Turned<'_> {
 
     /// The rounding bounds of f, f', f'' at t.
     fn rounding(&mut self, t: f64) -> [f64; 3] {
+        if !self.curve.smooth() {
+            return [0.0; 3];
+        }
         self.range(t, t).map(|bound| bound.hi - bound.lo)
     }
 }
@@ -144,7 +149,7 @@ pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_ma
                 pieces.push((s, middle, entry));
             }
             Look::Divide => {
-                if let Some(flip) = undecided(&mut f, s, e, known.touching()) {
+                if let Some(flip) = undecided(&mut f, s, e, entry, known.touching()) {
                     return Search::Flip(flip);
                 }
             }
@@ -326,10 +331,18 @@ fn concave(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, at_end: &[f64; 3], 
 }
 
 /// A piece too small to divide, or one piece too many.
-fn undecided(f: &mut Turned<'_>, s: f64, e: f64, touching: bool) -> Option<Flip> {
+fn undecided(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, touching: bool) -> Option<Flip> {
     let [at_start, at_end] = [f.value(s), f.value(e)];
+    let band = f.rounding(e)[0].max(f.jet(e)[1].abs() * time_resolution(e));
+    if entry == Entry::Boundary && at_end.abs() <= band {
+        return None;
+    }
     if at_end < 0.0 {
-        return Some(Flip { time: e, near: s, undecided: at_start <= 0.0 });
+        let (mut near, mut time) = (s, s.next_up());
+        while time < e && f.value(time) > 0.0 {
+            (near, time) = (time, time.next_up());
+        }
+        return Some(Flip { time: time.min(e), near, undecided: false });
     }
     let within = |f: &mut Turned<'_>, t: f64, value: f64| value.abs() <= f.rounding(t)[0];
     if touching && at_start > 0.0 && within(f, e, at_end) {
