@@ -233,3 +233,20 @@ fn rule_03_the_tolerance_never_enters() {
         all_near(&run.times("A.high"), &[1.0], 1e-11);
     }
 }
+
+#[test]
+fn rule_03_a_guard_that_jumps_fires_where_it_becomes_true_and_nowhere_else() {
+    // the remainder reaches a half once a second, and falls back at the whole seconds; the floor jumps to 3 at x = 1.5
+    let run = simulate(
+        "agent A { state x = 0  discrete n = 0  flow { x' = 1 }
+           half: when mod(x, 1) >= 0.5 { n := n + 1 }
+           clock: when mod(time, 1) >= 0.5 { n := n + 1 }
+           step: when floor(2*x) + 0.001*sin(x) >= 3 { n := n + 1 }
+           never: when mod(x, 1) >= 2 { n := n + 1 } }
+         system { a = A() }  run { until 4 }",
+    );
+    all_near(&run.times("A.half"), &[0.5, 1.5, 2.5, 3.5], 1e-12);
+    all_near(&run.times("A.clock"), &[0.5, 1.5, 2.5, 3.5], 1e-15);
+    all_near(&run.times("A.step"), &[1.5], 1e-12);
+    assert_eq!(run.times("A.never"), [0.0; 0]);
+}
