@@ -123,7 +123,7 @@ impl<'p> Engine<'p, '_> {
         let unchanged = rule == Rule::Woken && self.value_before(kernel, &slots, written) == Some(g);
         let truth = if g.is_nan() || absent && !g.is_finite() {
             false
-        } else if unchanged && before.rooted && before.certified == time {
+        } else if unchanged && before.rooted {
             touched = before.touched;
             before.truth
         } else if unchanged && before.slack == 0.0 {
@@ -151,7 +151,8 @@ impl<'p> Engine<'p, '_> {
         state.truth = truth;
         state.touched = touched;
         state.rooted = rule == Rule::Woken && before.rooted && unchanged;
-        self.recertify(index, time);
+        let kept = unchanged && before.rooted;
+        self.recertify(index, if kept { before.certified.max(time) } else { time });
         self.guards.atoms[index].settled = !(unchanged && before.slack == 0.0);
     }
 
@@ -280,8 +281,10 @@ impl<'p> Engine<'p, '_> {
                 if !fresh && read.clone().any(is_written) {
                     self.settle(index, Rule::Woken, written);
                 } else if read.any(is_concerned) {
-                    let until = self.guards.atoms[index].certified.min(self.present.time);
-                    self.recertify(index, until);
+                    let state = &self.guards.atoms[index];
+                    if !state.rooted {
+                        self.recertify(index, state.certified.min(self.present.time));
+                    }
                 }
             }
             woken.push(instance);

@@ -61,7 +61,7 @@ impl Engine<'_, '_> {
             let index = due.number as usize;
             if joins(self, self.guards.atoms[index].instance, due.time) {
                 near = near.min(self.guards.atoms[index].near);
-                changed.push(index);
+                changed.push((index, due.time));
             } else {
                 self.queues.flips.push(due);
             }
@@ -71,8 +71,8 @@ impl Engine<'_, '_> {
         }
         self.present.go(time);
         let mut concerned: Vec<u32> = Vec::new();
-        for index in changed {
-            self.flip(index);
+        for (index, root) in changed {
+            self.flip(index, root);
             concerned.push(self.guards.atoms[index].instance);
         }
         let mut candidates = Vec::new();
@@ -143,12 +143,12 @@ impl Engine<'_, '_> {
     }
 
     /// The true side of the roots, or the near side if the flows are not defined on the true one (rule 3).
-    fn defined_side(&mut self, time: f64, near: f64, changed: &[usize]) -> f64 {
+    fn defined_side(&mut self, time: f64, near: f64, changed: &[(usize, f64)]) -> f64 {
         if near >= time {
             return time;
         }
         let mut agents: Vec<usize> = Vec::new();
-        for &index in changed {
+        for &(index, _) in changed {
             let instance = self.guards.atoms[index].instance;
             for agent in self.guards.roots(instance) {
                 if !agents.contains(&agent) {
@@ -166,8 +166,8 @@ impl Engine<'_, '_> {
         if !defined(time) && defined(near) { near } else { time }
     }
 
-    /// Changes the truth of an atom at the present instant.
-    fn flip(&mut self, index: usize) {
+    /// Changes the truth of an atom at the present instant. Its root may lie a little later; it is certified from there on.
+    fn flip(&mut self, index: usize, root: f64) {
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
         let time = self.present.time;
         let jet = { AtomCurve::new(&self.agents, atom, &slots, &mut self.curves).jet(time) };
@@ -180,7 +180,7 @@ impl Engine<'_, '_> {
         state.truth = !state.truth;
         state.rooted = true;
         let slack = jet[1].abs() * time_resolution(time);
-        self.recertify(index, time);
+        self.recertify(index, root.max(time));
         let state = &mut self.guards.atoms[index];
         state.slack = if slack.is_finite() { slack } else { 0.0 };
         state.settled = !state.touch;
