@@ -257,6 +257,29 @@ fn three_crossings_in_one_step() {
     all_near(&clock("(x - 1)*(x - 2)*(x - 3) <= 0", 10.0), &[0.0, 2.0], 1e-10);
 }
 
+#[test]
+fn jumps_of_a_guard() {
+    all_near(&clock("floor(x) >= 2", 10.0), &[2.0], 1e-11);
+    all_near(&clock("mod(x, 1) >= 0.5", 3.0), &[0.5, 1.5, 2.5], 1e-11);
+    all_near(&clock("mod(x, 1) < 0.5", 3.2), &[0.0, 1.0, 2.0, 3.0], 1e-11);
+    all_near(&clock("sign(x - 1) > 0", 3.0), &[1.0], 1e-11);
+    all_near(&clock("(if x < 1 then -1 else 1) >= 0", 3.0), &[1.0], 1e-11);
+    all_near(&clock("atan2(sin(x), cos(x)) < 0", 7.0), &[PI], 1e-11);
+    all_near(&clock("abs(x - 1) <= 0.25", 3.0), &[0.75], 1e-11);
+    all_near(&clock("max(x, 2*x - 3) >= 4", 8.0), &[3.5], 1e-11);
+    all_near(&clock("min(x, 2) >= 2", 8.0), &[2.0], 1e-11);
+}
+
+#[test]
+fn singular_rates() {
+    // the distance to (3, 0) of a body that runs through it, the root of which has an infinite rate
+    all_near(&clock("sqrt((x - 3)^2) <= 0.001", 8.0), &[2.999], 1e-11);
+    all_near(&clock("hypot(x - 3, 0) <= 0.001", 8.0), &[2.999], 1e-11);
+    all_near(&clock("sqrt(x) >= 1.5", 8.0), &[2.25], 1e-11);
+    all_near(&clock("cbrt(x - 3) >= 0", 8.0), &[3.0], 1e-10);
+    all_near(&clock("acos(1 - x) >= 1.5", 1.9), &[1.0 - 1.5f64.cos()], 1e-11);
+}
+
 /// What the four relations do in one situation: g(t), and the times for `g <= 0` and for `g < 0`.
 fn pairing(g: &str, run: &dyn Fn(&str) -> Vec<f64>, weak: &[f64], strict: &[f64], tolerance: f64) {
     let guards = [
@@ -291,6 +314,19 @@ fn pairings_cross() {
     pairing("(x - 1)", &run, &[0.0], &[0.0], 0.0);
     pairing("(1 - x)*(2 - x)", &run, &[1.0], &[1.0], 1e-11);
     pairing("(-(1 - x)*(2 - x))", &run, &[0.0, 2.0], &[0.0, 2.0], 1e-11);
+}
+
+#[test]
+fn pairings_start_at_zero() {
+    let run = |guard: &str| clock(guard, 3.0);
+    // moving in; moving out; in and out with a rate of zero; out and in again
+    pairing("(-x)", &run, &[0.0], &[0.0], 0.0);
+    pairing("x", &run, &[0.0], &[], 0.0);
+    pairing("(-x^2)", &run, &[0.0], &[0.0], 1e-7);
+    pairing("x^2", &run, &[0.0], &[], 0.0);
+    pairing("x*(2 - x)", &run, &[0.0, 2.0], &[2.0], 1e-11);
+    pairing("x^3", &run, &[0.0], &[], 0.0);
+    pairing("(-x^3)", &run, &[0.0], &[0.0], 1e-5);
 }
 
 #[test]

@@ -120,6 +120,17 @@ fn rule_02_false_and_true_within_one_instant_fires_again() {
 }
 
 #[test]
+fn rule_02_being_false_at_a_single_point_does_not_arm() {
+    for guard in ["(x - 1)^2 > 0", "x < 1 or x > 1", "abs(x - 1) > 0", "-(x - 1)^2 < 0"] {
+        let run = simulate(&format!(
+            "agent A {{ state x = 0  flow {{ x' = 1 }}  go: when {guard} {{ }} }}
+             system {{ a = A() }}  run {{ until 3 }}"
+        ));
+        assert_eq!(run.times("A.go"), [0.0], "{guard}");
+    }
+}
+
+#[test]
 fn rule_02_being_false_for_a_while_arms() {
     let run = simulate(
         "agent A { state x = 0  flow { x' = 1 }  go: when (x - 1)^2 >= 0.25 { } }

@@ -76,6 +76,18 @@ fn rule_12_a_reset_to_what_is_not_a_number_is_an_error() {
 }
 
 #[test]
+fn rule_12_a_zeno_ball_ends_with_a_diagnostic() {
+    let (run, found) = Case::shipped("bouncing_ball.hy").until(10.0).run_error();
+    let limit = 9.0 * (2.0f64 / 9.81).sqrt();
+    near(run.time, limit, 1e-5);
+    let words = words(&[found]);
+    assert!(words.contains("Ball.bounce") && words.contains("zeno_events"), "{words}");
+    // the estimate of the limit
+    assert!(words.contains("4.06"), "{limit} in\n{words}");
+    assert!(run.value("ball.x") >= -1e-9);
+}
+
+#[test]
 fn rule_12_every_never_counts_as_zeno() {
     let run = simulate(
         "agent A { discrete n = 0  tick: every 1e-11 { n := n + 1 } }
