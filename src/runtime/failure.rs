@@ -207,7 +207,7 @@ impl Reason {
                     .note(place.note())
                     .note(format!("the cycle: {}", cycle.join(", ")))
                     .note(format!("the times of the events converge to about t = {limit_time}"))
-                    .help("add a mode for what comes after the limit (a ball at rest), or hysteresis between the guards")
+                    .help("add a mode for what comes after (a ball at rest), or hysteresis between the guards; the limit is called `zeno_events`")
             }
             Reason::ChatteringKink { place, count, span } => {
                 Diagnostic::error("HY0507", format!("chattering: a flow switched its branch {count} times in no time"))

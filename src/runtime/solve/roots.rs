@@ -216,12 +216,24 @@ fn enter(f: &mut Turned<'_>, s: f64, known: Known) -> Result<Entry, Flip> {
     if jet[0] < -band.max(rounding[0]) {
         return Err(flip);
     }
-    match decide(&jet, &rounding) {
+    let direction = decide(&jet, &rounding);
+    if direction != Direction::Up && !known.touching() && turns_back(f, s, &jet, band.max(rounding[0])) {
+        return Ok(Entry::Boundary);
+    }
+    match direction {
         Direction::Up => Ok(Entry::Boundary),
         Direction::Down => Err(flip),
         Direction::Along if known.truth == known.closed => Ok(Entry::Boundary),
         Direction::Along => Err(flip),
     }
+}
+
+/// Whether an f within `band` of zero at t is positive again where its rate would have it below: there is a kink in
+/// between, or more rates than two are zero at t, and f is zero at a single point.
+fn turns_back(f: &mut Turned<'_>, t: f64, jet: &[f64; 3], band: f64) -> bool {
+    let fall = if jet[1] < 0.0 { (band + jet[0].abs()) / -jet[1] } else { 0.0 };
+    let soon = 2.0 * (time_resolution(t) + fall);
+    soon.is_finite() && f.value(t + soon) > 0.0
 }
 
 /// What a look at a piece found.
@@ -245,7 +257,7 @@ fn look(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, known: &Known) -> Look
     let at_end = f.jet(e);
     if f1.hi <= 0.0 {
         return match entry {
-            Entry::Clear => falling(f, s, e, &at_end, known.reach),
+            Entry::Clear => falling(f, s, e, &at_end, known),
             Entry::Boundary | Entry::Unsettled => Look::Flip(Flip { time: s, near: s, undecided: false }),
         };
     }
@@ -253,7 +265,7 @@ fn look(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, known: &Known) -> Look
         return convex(f, s, e, entry, &at_end, known);
     }
     if f2.hi <= 0.0 {
-        return concave(f, s, e, entry, &at_end, known.reach);
+        return concave(f, s, e, entry, &at_end, known);
     }
     Look::Divide
 }
@@ -266,11 +278,11 @@ fn clears_by_mean_value(f: &mut Turned<'_>, s: f64, e: f64, f0: &Interval, f1: &
 }
 
 /// f falls from f(s) > 0.
-fn falling(f: &mut Turned<'_>, s: f64, e: f64, at_end: &[f64; 3], reach: f64) -> Look {
+fn falling(f: &mut Turned<'_>, s: f64, e: f64, at_end: &[f64; 3], known: &Known) -> Look {
     if at_end[0] <= 0.0 {
         return Look::Flip(isolate(f, s, e));
     }
-    if due(f, e, at_end, reach) {
+    if due(f, e, at_end, known) {
         return Look::Flip(Flip { time: e, near: e, undecided: false });
     }
     Look::Clear
@@ -278,10 +290,13 @@ fn falling(f: &mut Turned<'_>, s: f64, e: f64, at_end: &[f64; 3], reach: f64) ->
 
 /// Whether f, positive at the end, falls to zero within `reach` after it, or is there within rounding: such a root is
 /// found here, not at the start of what follows.
-fn due(f: &mut Turned<'_>, e: f64, at_end: &[f64; 3], reach: f64) -> bool {
-    let loss = -at_end[1] * reach;
+fn due(f: &mut Turned<'_>, e: f64, at_end: &[f64; 3], known: &Known) -> bool {
+    let loss = -at_end[1] * known.reach;
     let suspicious = at_end[1] < 0.0 && at_end[0] <= loss.max(1e-9 * at_end[1].abs());
-    suspicious && (at_end[0] <= loss || at_end[0] <= f.rounding(e)[0])
+    if !suspicious || at_end[0] > loss && at_end[0] > f.rounding(e)[0] {
+        return false;
+    }
+    known.touching() || !turns_back(f, e, at_end, 0.0)
 }
 
 /// f'' >= 0: one minimum at most.
@@ -290,7 +305,7 @@ fn convex(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, at_end: &[f64; 3], k
         return Look::Clear;
     }
     if at_end[1] <= 0.0 {
-        return falling(f, s, e, at_end, known.reach);
+        return falling(f, s, e, at_end, known);
     }
     if f.jet(s)[1] >= 0.0 {
         return Look::Clear;
@@ -309,9 +324,9 @@ fn convex(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, at_end: &[f64; 3], k
 }
 
 /// f'' <= 0: it stays above the chord.
-fn concave(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, at_end: &[f64; 3], reach: f64) -> Look {
+fn concave(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, at_end: &[f64; 3], known: &Known) -> Look {
     if at_end[0] > 0.0 {
-        if due(f, e, at_end, reach) {
+        if due(f, e, at_end, known) {
             return Look::Flip(Flip { time: e, near: e, undecided: false });
         }
         return Look::Clear;
@@ -389,7 +404,7 @@ fn bracket(s: f64, e: f64, f: &mut dyn FnMut(f64) -> f64) -> (f64, f64) {
         }
         let aim = lo + (hi - lo) * (f_lo / (f_lo - f_hi));
         let past = 2.0 * ulp(aim) * f64::from(last_side);
-        let mut t = if aim.is_finite() { aim + past } else { middle };
+        let mut t = if aim.is_finite() && f_hi < 0.0 { aim + past } else { middle };
         if round % 3 == 2 {
             if hi - lo > 0.5 * width {
                 t = middle;
@@ -399,7 +414,11 @@ fn bracket(s: f64, e: f64, f: &mut dyn FnMut(f64) -> f64) -> (f64, f64) {
         t = t.clamp(lo.next_up(), hi.next_down());
         let value = f(t);
         if value == 0.0 {
-            return (lo, t);
+            // The first of the zeros, should there be more of them.
+            let before = t.next_down();
+            if before <= lo || f(before) > 0.0 {
+                return (before.max(lo), t);
+            }
         }
         let side = if value > 0.0 { 1 } else { -1 };
         if side > 0 {
