@@ -10,6 +10,9 @@ use crate::runtime::solve::roots::{Curve, Known, Search, first_flip};
 use crate::runtime::solve::{time_resolution, ulp};
 use crate::runtime::truth::{self, depth_read};
 
+/// How often at most a comparison is looked at before it tries again to sleep.
+const BACKOFF_MAX: u16 = 64;
+
 impl Engine<'_, '_> {
     /// Certifies every atom up to the cover at least.
     pub fn certify_up_to(&mut self, cover: f64) {
@@ -110,9 +113,8 @@ impl Engine<'_, '_> {
     ) -> Option<f64> {
         let used = &atom.slots;
         let state = &mut self.guards.atoms[index];
-        if state.stride < 0.0 {
-            // Not worth trying for a while.
-            state.stride += 1.0;
+        if state.skip > 0 {
+            state.skip -= 1;
             return None;
         }
         let truth = state.truth;
@@ -134,7 +136,8 @@ impl Engine<'_, '_> {
                 horizon,
             );
             if bound.is_some_and(|bound| if truth { bound.hi < 0.0 } else { bound.lo > 0.0 }) {
-                self.guards.atoms[index].stride = 2.0 * horizon;
+                let state = &mut self.guards.atoms[index];
+                (state.stride, state.backoff) = (2.0 * horizon, 0);
                 return Some((from + horizon).min(self.time_end));
             }
             // As far as a straight line from g here to the worst of the bound stays clear, with room.
@@ -145,7 +148,9 @@ impl Engine<'_, '_> {
             let share = 0.7 * here / (here - worst);
             horizon *= if share.is_finite() { share.clamp(1e-3, 0.25) } else { 0.2 };
         }
-        self.guards.atoms[index].stride = -4.0;
+        let state = &mut self.guards.atoms[index];
+        state.backoff = (2 * state.backoff).clamp(4, BACKOFF_MAX);
+        (state.skip, state.stride) = (state.backoff, 8.0 * least);
         None
     }
 

@@ -18,6 +18,8 @@ use crate::runtime::solve::control::Accuracy;
 pub struct Enclosures {
     accuracy: Accuracy,
     kept: Vec<Vec<Kept>>,
+    /// For each group, the last horizon for which no box was found: version, when asked, length.
+    failed: Vec<(u32, f64, f64)>,
     registers: Vec<Interval>,
     /// Scratch: the boxes of the slots one after the other, and a state.
     boxes: Vec<Interval>,
@@ -57,6 +59,7 @@ impl Enclosures {
         Self {
             accuracy,
             kept: Vec::new(),
+            failed: Vec::new(),
             registers: Vec::new(),
             boxes: Vec::new(),
             state: Vec::new(),
@@ -149,6 +152,7 @@ impl Enclosures {
     ) -> Option<usize> {
         if self.kept.len() <= number {
             self.kept.resize(number + 1, Vec::new());
+            self.failed.resize(number + 1, (u32::MAX, 0.0, f64::INFINITY));
         }
         let kept = &mut self.kept[number];
         kept.retain(|kept| kept.version == group.version && kept.end > t);
@@ -158,7 +162,14 @@ impl Enclosures {
         if let Some(found) = kept.iter().position(fits) {
             return Some(found);
         }
-        let rates = self.picard(agents, group, t, 1.5 * horizon)?;
+        let (version, asked, length) = self.failed[number];
+        if version == group.version && horizon >= length && t <= asked + 0.25 * length {
+            return None;
+        }
+        let Some(rates) = self.picard(agents, group, t, 1.5 * horizon) else {
+            self.failed[number] = (group.version, t, horizon);
+            return None;
+        };
         let kept = &mut self.kept[number];
         let new = Kept { version: group.version, start: t, end: t + 1.5 * horizon, rates };
         if kept.len() < KEPT_MAX {

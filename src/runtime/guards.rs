@@ -105,8 +105,12 @@ pub struct AtomState {
     pub slack: f64,
     /// See `Known::settled`.
     pub settled: bool,
-    /// How far ahead to try to sleep, s.
+    /// How far ahead to try to sleep, s; 0: as far as the run goes.
     pub stride: f64,
+    /// How often not to try to sleep before the next try.
+    pub skip: u16,
+    /// What `skip` was set to last; it doubles while sleeping fails.
+    pub backoff: u16,
     /// Entries of other versions in the queues are void.
     pub version: u32,
 }
@@ -187,6 +191,8 @@ impl<'p> Guards<'p> {
             slack: 0.0,
             settled: false,
             stride: 0.0,
+            skip: 0,
+            backoff: 0,
             version: 0,
         };
         self.atoms.resize(self.atoms.len() + definition.n_atoms, fresh);
