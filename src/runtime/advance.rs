@@ -13,7 +13,7 @@ use crate::runtime::population::{ABSENT, Agents, Slots};
 use crate::runtime::present::Views;
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::roots::{Known, Search, first_flip};
-use crate::runtime::solve::tsit5::{self, ORDER, STAGES, StepRows};
+use crate::runtime::solve::tsit5::{self, Accepted, ORDER, STAGES, StepRows};
 use crate::runtime::solve::ulp;
 
 /// Counts of steps.
@@ -219,11 +219,12 @@ impl Stepper {
     /// Makes the accepted step the members' last segment.
     fn keep(&mut self, agents: &mut Agents<'_>, group: &mut Group, h: f64, end: f64) {
         let n = self.x.len();
+        let step = Accepted { t: group.clock, h, end, k: &self.rows.k, n };
         let mut first = 0;
         for &member in &group.members {
             let agent = &mut agents.agents[member];
             let n_states = agent.states.len();
-            tsit5::dense(group.clock, h, end, &agent.states, &self.rows.k, n, first, &mut agent.segment);
+            tsit5::dense(&step, &agent.states, first, &mut agent.segment);
             agent.states.copy_from_slice(&self.rows.x_new[first..first + n_states]);
             first += n_states;
             self.counts.steps += 1;

@@ -1,5 +1,4 @@
 //! Certification (I2, I3, I6): each comparison is known not to change up to a time, or known to change at one.
-use crate::codegen::kernel::Kernel;
 use crate::codegen::program::Atom;
 use crate::runtime::detect::AtomCurve;
 use crate::runtime::engine::{Due, Engine};
@@ -58,11 +57,10 @@ impl Engine<'_, '_> {
             self.certified(index, self.time_end);
             return;
         }
-        if depth_read(kernel) == Depth::States && !blocked {
-            if let Some(until) = self.sleep(index, atom, kernel, &slots, from, to) {
-                self.certified(index, until);
-                return;
-            }
+        let may_sleep = !blocked && depth_read(kernel) == Depth::States;
+        if may_sleep && let Some(until) = self.sleep(index, atom, &slots, from, to) {
+            self.certified(index, until);
+            return;
         }
         let state = self.guards.atoms[index];
         let known = Known {
@@ -102,16 +100,7 @@ impl Engine<'_, '_> {
     }
 
     /// I6: how long an atom cannot change, if that is longer than its segments reach.
-    fn sleep(
-        &mut self,
-        index: usize,
-        atom: &Atom,
-        kernel: &Kernel,
-        slots: &Slots,
-        from: f64,
-        to: f64,
-    ) -> Option<f64> {
-        let used = &atom.slots;
+    fn sleep(&mut self, index: usize, atom: &Atom, slots: &Slots, from: f64, to: f64) -> Option<f64> {
         let state = &mut self.guards.atoms[index];
         if state.skip > 0 {
             state.skip -= 1;
@@ -126,15 +115,8 @@ impl Engine<'_, '_> {
             if horizon <= least {
                 break;
             }
-            let bound = self.enclosures.value_range(
-                &self.agents,
-                &self.groups.groups,
-                kernel,
-                slots,
-                used,
-                from,
-                horizon,
-            );
+            let bound =
+                self.enclosures.value_range(&self.agents, &self.groups.groups, atom, slots, from, horizon);
             if bound.is_some_and(|bound| if truth { bound.hi < 0.0 } else { bound.lo > 0.0 }) {
                 let state = &mut self.guards.atoms[index];
                 (state.stride, state.backoff) = (2.0 * horizon, 0);

@@ -7,10 +7,11 @@
 
 use smallvec::SmallVec;
 
-use crate::codegen::kernel::{AgentBox, Kernel};
+use crate::codegen::kernel::AgentBox;
+use crate::codegen::program::Atom;
 use crate::math::Interval;
 use crate::runtime::groups::Group;
-use crate::runtime::population::{ABSENT, Agents, Slots};
+use crate::runtime::population::{ABSENT, Agent, Agents, Slots};
 use crate::runtime::present::Boxes;
 use crate::runtime::solve::control::Accuracy;
 
@@ -74,15 +75,14 @@ impl Enclosures {
         &mut self,
         agents: &Agents<'_>,
         groups: &[Group],
-        kernel: &Kernel,
+        atom: &Atom,
         slots: &Slots,
-        used: &[usize],
         t: f64,
         horizon: f64,
     ) -> Option<Interval> {
         let mut places: SmallVec<[(usize, usize, usize); 3]> = SmallVec::new();
         self.boxes.clear();
-        for &slot in used {
+        for &slot in &atom.slots {
             let agent = slots[slot];
             if agent == ABSENT || agents.agents[agent].states.is_empty() {
                 continue;
@@ -91,8 +91,10 @@ impl Enclosures {
             let kept = self.enclose(agents, group, &groups[group], t, horizon)?;
             let before = groups[group].members.iter().take_while(|&&member| member != agent);
             let first: usize = before.map(|&member| agents.agents[member].states.len()).sum();
-            places.push((slot, self.boxes.len(), agents.agents[agent].states.len()));
-            self.add_box(agents, agent, group, kept, first, t, horizon);
+            let n = agents.agents[agent].states.len();
+            let rates: SmallVec<[Interval; 8]> = self.kept[group][kept].rates[first..first + n].into();
+            places.push((slot, self.boxes.len(), n));
+            self.add_box(&agents.agents[agent], &rates, t, horizon);
         }
         let boxes: Boxes<'_> = (0..slots.len())
             .map(|slot| {
@@ -110,23 +112,17 @@ impl Enclosures {
             .collect();
         let mut out = [Interval::WHOLE];
         self.ranges += 1;
-        kernel.range(&boxes, Interval { lo: t, hi: t + horizon }, &mut self.registers, &mut out);
+        agents.program.kernel(atom.value).range(
+            &boxes,
+            Interval { lo: t, hi: t + horizon },
+            &mut self.registers,
+            &mut out,
+        );
         Some(out[0])
     }
 
-    /// Appends the box of an agent's states over [t, t + horizon].
-    #[allow(clippy::too_many_arguments)]
-    fn add_box(
-        &mut self,
-        agents: &Agents<'_>,
-        agent: usize,
-        group: usize,
-        kept: usize,
-        first: usize,
-        t: f64,
-        horizon: f64,
-    ) {
-        let agent = &agents.agents[agent];
+    /// Appends the box of an agent's states over [t, t + horizon], from bounds of their rates.
+    fn add_box(&mut self, agent: &Agent, rates: &[Interval], t: f64, horizon: f64) {
         self.state.resize(agent.states.len(), 0.0);
         if t == agent.segment.end {
             self.state.copy_from_slice(&agent.states);
@@ -134,8 +130,8 @@ impl Enclosures {
             agent.segment.states(t, &mut self.state);
         }
         let span = Interval { lo: 0.0, hi: horizon };
-        for (k, &x) in self.state.iter().enumerate() {
-            let bound = Interval { lo: x, hi: x }.add(span.mul(self.kept[group][kept].rates[first + k]));
+        for (&x, &rate) in self.state.iter().zip(rates) {
+            let bound = Interval { lo: x, hi: x }.add(span.mul(rate));
             let bound = self.padded(bound);
             self.boxes.push(bound);
         }

@@ -113,9 +113,9 @@ fn components(agents: &Agents<'_>, members: &[usize]) -> Vec<Vec<usize>> {
         }
     }
     let mut components: Vec<Vec<usize>> = vec![Vec::new(); sorted.len()];
-    for k in 0..sorted.len() {
+    for (k, &agent) in sorted.iter().enumerate() {
         let first = find(&mut root, k);
-        components[first].push(sorted[k]);
+        components[first].push(agent);
     }
     components.retain(|component| !component.is_empty());
     components

@@ -47,11 +47,15 @@ impl Engine<'_, '_> {
             let sample = self.recorder.next();
             if sample < cause && sample <= cover {
                 self.recorder.sample(&self.agents, &mut self.present, sample, self.observer)?;
-            } else if cause <= self.time_end && (cause + time_resolution(cause)).min(self.time_end) <= cover {
+            } else if cause < f64::INFINITY
+                && cause <= self.time_end
+                && (cause + time_resolution(cause)).min(self.time_end) <= cover
+            {
                 self.execute(cause)?;
             } else if cover >= self.time_end {
                 return self.finish();
             } else if cover > ENDLESS {
+                self.present.go(cover);
                 return Err(Reason::NeverEnds { time: cover }.into());
             } else {
                 self.advance_laggard(cover)?;
@@ -126,6 +130,7 @@ impl Engine<'_, '_> {
             }
         }
         if self.stepper.counts.steps + self.stepper.counts.rejected > self.limits.steps_max {
+            self.present.go(cover);
             return Err(Reason::StepLimit { time: cover, limit: self.limits.steps_max }.into());
         }
         let advance =

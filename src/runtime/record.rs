@@ -18,6 +18,13 @@ pub struct Recorder<'p> {
     cells: Vec<Cell>,
 }
 
+/// Whether a row is written where one of the same agent and time has been.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Repeat {
+    Never,
+    Always,
+}
+
 struct Recording<'p> {
     record: &'p Record,
     /// Samples written so far.
@@ -83,7 +90,7 @@ impl<'p> Recorder<'p> {
         observer: &mut dyn Observer,
     ) -> Result<(), Failure> {
         for agent in 0..agents.len() {
-            self.write_every_step(agents, present, agent, present.time, 0, true, observer)?;
+            self.write_every_step(agents, present, agent, 0, Repeat::Never, observer)?;
         }
         Ok(())
     }
@@ -97,7 +104,8 @@ impl<'p> Recorder<'p> {
         time: f64,
         observer: &mut dyn Observer,
     ) -> Result<(), Failure> {
-        self.write_every_step(agents, present, agent, time, 0, true, observer)
+        present.go(time);
+        self.write_every_step(agents, present, agent, 0, Repeat::Never, observer)
     }
 
     /// Writes the near side of an event.
@@ -108,8 +116,7 @@ impl<'p> Recorder<'p> {
         agent: usize,
         observer: &mut dyn Observer,
     ) -> Result<(), Failure> {
-        let time = present.time;
-        self.write_every_step(agents, present, agent, time, 0, true, observer)
+        self.write_every_step(agents, present, agent, 0, Repeat::Never, observer)
     }
 
     /// Writes the far side of an event for the agents that it wrote.
@@ -123,9 +130,8 @@ impl<'p> Recorder<'p> {
     ) -> Result<(), Failure> {
         let before = if self.last_instant.0 == present.time { self.last_instant.1 } else { 0 };
         self.last_instant = (present.time, before.max(micro));
-        let time = present.time;
         for &agent in touched {
-            self.write_every_step(agents, present, agent, time, micro, false, observer)?;
+            self.write_every_step(agents, present, agent, micro, Repeat::Always, observer)?;
         }
         Ok(())
     }
@@ -135,15 +141,13 @@ impl<'p> Recorder<'p> {
         self.records.iter().any(|recording| recording.record.every.is_none())
     }
 
-    #[allow(clippy::too_many_arguments)]
     fn write_every_step(
         &mut self,
         agents: &Agents<'_>,
         present: &mut Present,
         agent: usize,
-        time: f64,
         micro: usize,
-        once: bool,
+        repeat: Repeat,
         observer: &mut dyn Observer,
     ) -> Result<(), Failure> {
         for number in 0..self.records.len() {
@@ -152,11 +156,10 @@ impl<'p> Recorder<'p> {
                 continue;
             }
             let Ok(place) = recording.record.agents.binary_search(&agent) else { continue };
-            if once && recording.last[place] == time {
+            if repeat == Repeat::Never && recording.last[place] == present.time {
                 continue;
             }
-            recording.last[place] = time;
-            present.go(time);
+            recording.last[place] = present.time;
             self.row(agents, present, number, agent, micro, observer)?;
         }
         Ok(())

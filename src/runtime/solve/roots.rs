@@ -154,14 +154,14 @@ pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_ma
                 }
             }
         }
-        if looked_at >= PIECES_PATIENT && looked_at.is_power_of_two() {
-            if let Some((s, e, _)) = pieces.last().copied() {
-                if let Some(found) = along(&mut f, s, e, &known) {
-                    pieces.pop();
-                    if let Search::Flip(flip) = found {
-                        return Search::Flip(flip);
-                    }
-                }
+        if looked_at >= PIECES_PATIENT
+            && looked_at.is_power_of_two()
+            && let Some((s, e, _)) = pieces.last().copied()
+            && let Some(found) = along(&mut f, s, e, &known)
+        {
+            pieces.pop();
+            if let Search::Flip(flip) = found {
+                return Search::Flip(flip);
             }
         }
     }

@@ -33,13 +33,30 @@ impl StepRows {
     }
 }
 
+/// A right-hand side: time, states, and where their rates go.
+pub type Rates<'a> = dyn FnMut(f64, &[f64], &mut [f64]) + 'a;
+
+/// An accepted step, from which dense output is made.
+pub struct Accepted<'a> {
+    /// Where it begins, s.
+    pub t: f64,
+    /// Its length, s.
+    pub h: f64,
+    /// Where it ends: t + h, or what that is meant to be, s.
+    pub end: f64,
+    /// Rates of the stages: 7 rows of n.
+    pub k: &'a [f64],
+    /// How many equations.
+    pub n: usize,
+}
+
 /// Takes a step of length `h` from `(t, x)`; `rates(t, x, dx)` is the right-hand side.
-pub fn step(t: f64, h: f64, x: &[f64], rows: &mut StepRows, rates: &mut dyn FnMut(f64, &[f64], &mut [f64])) {
+pub fn step(t: f64, h: f64, x: &[f64], rows: &mut StepRows, rates: &mut Rates<'_>) {
     let n = x.len();
     for s in 1..STAGES {
         let (known, rest) = rows.k.split_at_mut(s * n);
-        for i in 0..n {
-            rows.stage[i] = x[i] + h * weighted(&TSIT5.a[s][..s], known, n, i);
+        for (i, (stage, x)) in rows.stage.iter_mut().zip(x).enumerate() {
+            *stage = x + h * weighted(&TSIT5.a[s][..s], known, n, i);
         }
         rates(t + TSIT5.c[s] * h, &rows.stage, &mut rest[..n]);
     }
@@ -56,14 +73,15 @@ fn weighted(weights: &[f64], k: &[f64], n: usize, i: usize) -> f64 {
     terms.fold(first, |sum, term| sum + term)
 }
 
-/// Writes the dense output of `n_states` states that begin at row `first` of a step of `n` equations.
-pub fn dense(t: f64, h: f64, end: f64, x: &[f64], k: &[f64], n: usize, first: usize, segment: &mut Segment) {
-    let coefficients = segment.reset(t, h, end, 5, x.len());
+/// Writes the dense output of the states `x`, which begin at row `first` of a step.
+pub fn dense(step: &Accepted<'_>, x: &[f64], first: usize, segment: &mut Segment) {
+    let coefficients = segment.reset(step.t, step.h, step.end, 5, x.len());
     for (i, c) in coefficients.chunks_exact_mut(5).enumerate() {
         c[0] = x[i];
         for (power, c) in c[1..].iter_mut().enumerate() {
-            let sum = (0..STAGES).fold(0.0, |sum, s| sum + TSIT5.dense[s][power] * k[s * n + first + i]);
-            *c = h * sum;
+            let sum =
+                (0..STAGES).fold(0.0, |sum, s| sum + TSIT5.dense[s][power] * step.k[s * step.n + first + i]);
+            *c = step.h * sum;
         }
     }
 }
