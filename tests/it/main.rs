@@ -18,6 +18,7 @@ mod models;
 mod stages;
 mod rules;
 mod instants;
+mod crowds;
 mod grazes;
 mod closed_forms;
 mod bumper;
