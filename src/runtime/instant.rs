@@ -49,7 +49,7 @@ impl Engine<'_, '_> {
             let fired: Vec<u32> = chosen.iter().map(|ranked| ranked.candidate.instance).collect();
             let woken = self.wake(&written)?;
             for &instance in &fired {
-                self.settle_fired(instance);
+                self.settle_fired(instance, &written);
             }
             for &instance in fired.iter().chain(&woken) {
                 self.rearm(instance);
@@ -238,8 +238,9 @@ impl Engine<'_, '_> {
         Ok(())
     }
 
-    /// A guard that has just fired looks at its boundary by the rates along the new flow (rule 3).
-    fn settle_fired(&mut self, instance: u32) {
+    /// A guard that has just fired looks at its boundary by the rates along the new flow (rule 3): where it had its root,
+    /// and where a reset may have put it there.
+    fn settle_fired(&mut self, instance: u32, written: &Written) {
         if !self.guards.instances[instance as usize].active {
             return;
         }
@@ -248,7 +249,9 @@ impl Engine<'_, '_> {
             let was_rooted = state.rooted;
             state.touched = false;
             state.rooted = false;
-            if was_rooted {
+            let (atom, slots) = self.guards.atom_slots(&self.agents, index);
+            let is_written = atom.slots.iter().any(|&slot| written.before.contains_key(&slots[slot]));
+            if was_rooted || is_written {
                 self.settle(index, Rule::Rates, &Written::default());
             }
         }
