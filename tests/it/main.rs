@@ -23,3 +23,4 @@ mod grazes;
 mod closed_forms;
 mod bumper;
 mod accuracy;
+mod differential;

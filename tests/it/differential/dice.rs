@@ -1,0 +1,46 @@
+//! A small generator of pseudo-random numbers (splitmix64): the same seed gives the same model on every machine.
+
+/// The state of the generator.
+pub struct Dice(u64);
+
+impl Dice {
+    /// The dice of one model.
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0xD134_2543_DE82_EF95).wrapping_add(0x2545_F491_4F6C_DD1D))
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// A number below `n`.
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.next() % n as u64) as usize
+    }
+
+    /// True in so many of a hundred cases.
+    pub fn percent(&mut self, share: usize) -> bool {
+        self.below(100) < share
+    }
+
+    /// One of these.
+    pub fn pick<'a, T>(&mut self, list: &'a [T]) -> &'a T {
+        &list[self.below(list.len())]
+    }
+
+    /// A number between these with three decimals, as text; a negative one in parentheses.
+    pub fn number(&mut self, low: f64, high: f64) -> String {
+        let unit = (self.next() >> 11) as f64 / (1u64 << 53) as f64;
+        let value = low + (high - low) * unit;
+        if value < 0.0 { format!("({value:.3})") } else { format!("{value:.3}") }
+    }
+
+    /// A number of this size at least and at most, of either sign.
+    pub fn signed(&mut self, low: f64, high: f64) -> String {
+        if self.percent(50) { self.number(low, high) } else { self.number(-high, -low) }
+    }
+}

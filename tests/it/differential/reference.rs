@@ -1,0 +1,514 @@
+//! A slow and obvious simulator of the language's core, written from docs/LANGUAGE.md and from nothing of the engine.
+//!
+//! One global clock goes forward in small equal steps. After each step every guard of every agent and pair is evaluated;
+//! if one may fire, or a branch in a flow went another way, the step is bisected to the earliest such time.
+
+use hyc::math::Op;
+use hyc::model::ir::{
+    Action, ExprId, ExprKind, InteractionId, ModeId, Model, Transition, Trigger, TypeId, VarRef,
+};
+
+use super::boundary::Boundary;
+use super::evaluate::Scope;
+use super::world::World;
+
+/// A row of the event log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// s.
+    pub time: f64,
+    /// The transition.
+    pub label: String,
+    /// The agent.
+    pub agent: usize,
+    /// The other one of a pair.
+    pub other: Option<usize>,
+    /// From which mode into which.
+    pub modes: Option<(String, String)>,
+}
+
+/// What a run did.
+pub struct History {
+    /// Its log.
+    pub rows: Vec<Row>,
+    /// Everything at the end.
+    pub world: World,
+}
+
+/// More branches of flows than such a model has: the flows on both sides push back.
+const MANY_BRANCHES: usize = 100;
+/// More events than a model worth comparing has in a run, and in an instant.
+const MANY: usize = 400;
+const MANY_IN_AN_INSTANT: usize = 40;
+
+/// Whose transition it is.
+#[derive(Clone, Copy, PartialEq)]
+enum Owner {
+    Type(TypeId),
+    Interaction(InteractionId),
+}
+
+/// A transition of an agent or of a pair, with its flag (rule 2).
+struct Instance {
+    owner: Owner,
+    transition: usize,
+    agents: [usize; 2],
+    armed: bool,
+    boundary: Boundary,
+    /// `every`: the number of the next time. `after`: unused.
+    k: u32,
+    /// At a time of its `every` that has not been used yet.
+    pulse: bool,
+}
+
+/// The simulator at work.
+pub struct Reference<'a> {
+    model: &'a Model,
+    world: World,
+    instances: Vec<Instance>,
+    rows: Vec<Row>,
+    branchings: usize,
+    end: f64,
+}
+
+/// A transition that is taken, and what it writes.
+struct Taken {
+    instance: usize,
+    moves: Vec<(usize, ModeId)>,
+    writes: Vec<(usize, VarRef, f64)>,
+}
+
+/// Runs a model with steps of this size and rates so far beside the truth; none if it does more than is worth comparing. `ordered` says of an interaction
+/// whether its pairs are ordered.
+pub fn run(model: &Model, step: f64, nudge: f64, ordered: impl Fn(&str) -> bool) -> Option<History> {
+    let mut reference = Reference::new(model, nudge, ordered);
+    reference.begin()?;
+    while reference.world.time < reference.end {
+        reference.advance(step)?;
+    }
+    Some(History { rows: reference.rows, world: reference.world })
+}
+
+impl<'a> Reference<'a> {
+    fn new(model: &'a Model, nudge: f64, ordered: impl Fn(&str) -> bool) -> Self {
+        let world = World::new(model, nudge);
+        let mut instances = Vec::new();
+        let instance = |owner, transition, agents| Instance {
+            owner,
+            transition,
+            agents,
+            armed: true,
+            boundary: Boundary::default(),
+            k: 1,
+            pulse: false,
+        };
+        let n = world.agents.len();
+        for (id, interaction) in model.interactions.iter_enumerated() {
+            for transition in 0..interaction.transitions.len() {
+                for (a, b) in (0..n).flat_map(|a| (0..n).map(move |b| (a, b))) {
+                    let types = [world.agents[a].ty, world.agents[b].ty];
+                    if a != b && types == interaction.types && (a < b || ordered(&interaction.name)) {
+                        instances.push(instance(Owner::Interaction(id), transition, [a, b]));
+                    }
+                }
+            }
+        }
+        for k in 0..n {
+            let ty = world.agents[k].ty;
+            for transition in 0..model.types[ty].transitions.len() {
+                instances.push(instance(Owner::Type(ty), transition, [k, k]));
+            }
+        }
+        let end = model.run.until.expect("the generator writes an end");
+        Self { model, world, instances, rows: Vec::new(), branchings: 0, end }
+    }
+
+    fn transition(&self, instance: usize) -> &'a Transition {
+        let instance = &self.instances[instance];
+        match instance.owner {
+            Owner::Type(ty) => &self.model.types[ty].transitions[instance.transition],
+            Owner::Interaction(id) => &self.model.interactions[id].transitions[instance.transition],
+        }
+    }
+
+    fn is_pair(&self, instance: usize) -> bool {
+        matches!(self.instances[instance].owner, Owner::Interaction(_))
+    }
+
+    /// Whether the agent is in the mode that the transition belongs to.
+    fn is_active(&self, instance: usize) -> bool {
+        let source = self.transition(instance).source;
+        self.is_pair(instance)
+            || self.world.modes_of(self.model, self.instances[instance].agents[0]).contains(&source)
+    }
+
+    fn scope<'s>(&'s self, world: &'s World, instance: usize) -> Scope<'s> {
+        Scope::new(self.model, world, self.instances[instance].agents, self.is_pair(instance))
+    }
+
+    /// When the present mode of the transition was entered.
+    fn entered(&self, instance: usize) -> f64 {
+        let root = self.transition(instance).source.index() == 0;
+        if root { 0.0 } else { self.world.agents[self.instances[instance].agents[0]].entered }
+    }
+
+    /// The next time that a transition is scheduled for.
+    fn due(&self, instance: usize) -> Option<f64> {
+        let (delay, times) = match self.transition(instance).trigger {
+            Trigger::When(_) => return None,
+            Trigger::After(delay, _) => (delay, 1.0),
+            Trigger::Every(period, _) => (period, f64::from(self.instances[instance].k)),
+        };
+        let delay = self.scope(&self.world, instance).number(delay);
+        let due = self.entered(instance) + times * delay;
+        Some(if (due - self.end).abs() <= 4.0 * f64::EPSILON * self.end { self.end } else { due })
+    }
+
+    /// The condition of a transition in a world of these modes.
+    fn holds(&self, world: &World, instance: usize) -> bool {
+        let (guard, ripe) = match self.transition(instance).trigger {
+            Trigger::When(guard) => (Some(guard), true),
+            Trigger::After(_, guard) => (guard, self.due(instance).is_some_and(|due| world.time >= due)),
+            Trigger::Every(_, guard) => (guard, self.instances[instance].pulse),
+        };
+        let Some(guard) = guard else { return ripe };
+        let mut scope = self.scope(world, instance);
+        let decided = self.instances[instance].boundary.decided(&mut scope, world);
+        scope.decided = &decided;
+        ripe && scope.truth(guard)
+    }
+
+    /// Whether a transition may fire.
+    fn enabled(&self, world: &World, instance: usize) -> bool {
+        let armed = match self.transition(instance).trigger {
+            Trigger::Every(..) => self.instances[instance].pulse,
+            Trigger::When(_) | Trigger::After(..) => self.instances[instance].armed,
+        };
+        armed && self.is_active(instance) && self.holds(world, instance)
+    }
+
+    fn any_enabled(&self, world: &World) -> bool {
+        (0..self.instances.len()).any(|instance| self.enabled(world, instance))
+    }
+
+    /// Rule 6.
+    fn begin(&mut self) -> Option<()> {
+        for agent in 0..self.world.agents.len() {
+            for mode in self.world.modes_of(self.model, agent) {
+                let entry = &self.model.types[self.world.agents[agent].ty].modes[mode].entry;
+                let mut writes = Vec::new();
+                collect(
+                    entry,
+                    &mut Scope::new(self.model, &self.world, [agent, agent], false),
+                    &mut writes,
+                    &mut Vec::new(),
+                );
+                self.write(&writes);
+            }
+        }
+        self.arm();
+        self.instant()
+    }
+
+    fn write(&mut self, writes: &[(usize, VarRef, f64)]) {
+        for (agent, variable, value) in writes {
+            let agent = &mut self.world.agents[*agent];
+            match variable {
+                VarRef::State(k) => self.world.states[agent.first + k] = *value,
+                VarRef::Discrete(k) => agent.discretes[*k] = *value,
+                VarRef::Param(_) | VarRef::Link(_) | VarRef::Let(_) => panic!("nobody writes this"),
+            }
+        }
+    }
+
+    /// Flags of guards that are false are set.
+    fn arm(&mut self) {
+        for instance in 0..self.instances.len() {
+            if self.is_active(instance)
+                && !self.instances[instance].armed
+                && !self.holds(&self.world, instance)
+            {
+                self.instances[instance].armed = true;
+            }
+        }
+    }
+
+    /// Flows to the end of the step or to the earliest thing that happens in it, and executes that.
+    fn advance(&mut self, step: f64) -> Option<()> {
+        let active = (0..self.instances.len()).filter(|instance| self.is_active(*instance));
+        let due = active.filter_map(|instance| self.due(instance)).filter(|due| *due > self.world.time);
+        let stop = due.fold(self.end.min(self.world.time + step), f64::min);
+        let branches = self.world.rates(self.model).1;
+        let happens = |world: &World| self.any_enabled(world) || world.rates(self.model).1 != branches;
+        let mut after = self.world.flow(self.model, stop);
+        if happens(&after) {
+            let mut before = self.world.time;
+            while after.time - before > 1e-13 * after.time.max(1.0) {
+                let middle = self.world.flow(self.model, 0.5 * (before + after.time));
+                if middle.time <= before || middle.time >= after.time {
+                    break;
+                }
+                if happens(&middle) { after = middle } else { before = middle.time }
+            }
+        }
+        self.branchings += usize::from(after.rates(self.model).1 != branches);
+        if self.branchings > MANY_BRANCHES {
+            return None;
+        }
+        self.world = after;
+        for instance in 0..self.instances.len() {
+            let every = matches!(self.transition(instance).trigger, Trigger::Every(..));
+            if every
+                && self.is_active(instance)
+                && self.due(instance).is_some_and(|due| due <= self.world.time)
+            {
+                self.instances[instance].pulse = true;
+            }
+            let scope =
+                Scope::new(self.model, &self.world, self.instances[instance].agents, self.is_pair(instance));
+            let boundary = std::mem::take(&mut self.instances[instance].boundary);
+            self.instances[instance].boundary = boundary.later(scope, &self.world);
+        }
+        self.arm();
+        self.instant()
+    }
+
+    /// Rule 4: micro-steps until nothing is enabled.
+    fn instant(&mut self) -> Option<()> {
+        let before = self.rows.len();
+        let late: Vec<usize> = (0..self.instances.len())
+            .filter(|k| self.instances[*k].pulse && !self.enabled(&self.world, *k))
+            .collect();
+        loop {
+            let taken = self.choose();
+            if taken.is_empty() {
+                break;
+            }
+            // Whether that time is still going on when what unrelated agents did has made the guard true, is open.
+            if taken.iter().any(|taken| late.contains(&taken.instance)) {
+                return None;
+            }
+            self.execute(taken);
+            let too_much = self.rows.len() > MANY || self.rows.len() - before > MANY_IN_AN_INSTANT;
+            if too_much || self.is_degenerate() {
+                return None;
+            }
+        }
+        for instance in &mut self.instances {
+            if std::mem::take(&mut instance.pulse) {
+                instance.k += 1;
+            }
+        }
+        Some(())
+    }
+
+    /// Whether events pile up, or some comparison is on its boundary for another reason than rule 3 knows.
+    fn is_degenerate(&self) -> bool {
+        let last = &self.rows[self.rows.len() - 1];
+        let like = |row: &&Row| (&row.label, row.agent, row.other) == (&last.label, last.agent, last.other);
+        let recent = |row: &&Row| row.time > last.time - 1e-3;
+        let piled_up = self.rows.iter().rev().take_while(recent).filter(like).count() > 4;
+        let stays = |instance: usize| match self.transition(instance).trigger {
+            Trigger::When(guard) | Trigger::After(_, Some(guard)) | Trigger::Every(_, Some(guard)) => {
+                let scope = self.scope(&self.world, instance);
+                self.is_active(instance) && self.instances[instance].boundary.is_left_open(scope, guard)
+            }
+            Trigger::After(_, None) | Trigger::Every(_, None) => false,
+        };
+        piled_up || (0..self.instances.len()).any(stays)
+    }
+
+    /// The transitions of the next micro-step with what they do, greedily in their order.
+    fn choose(&self) -> Vec<Taken> {
+        let mut enabled: Vec<usize> =
+            (0..self.instances.len()).filter(|instance| self.enabled(&self.world, *instance)).collect();
+        let rank = |instance: &usize| {
+            let transition = self.transition(*instance);
+            let priority = transition
+                .priority
+                .map_or(0.0, |priority| self.scope(&self.world, *instance).number(priority));
+            // interactions stand beside what an agent does in every mode
+            let depth = if self.is_pair(*instance) {
+                0
+            } else {
+                let ty = self.world.agents[self.instances[*instance].agents[0]].ty;
+                self.model.types[ty].modes[transition.source].depth
+            };
+            (-priority, depth, transition.span.start, self.instances[*instance].agents)
+        };
+        enabled.sort_by(|a, b| rank(a).partial_cmp(&rank(b)).expect("priorities are numbers"));
+        let (mut chosen, mut written, mut busy) = (Vec::new(), Vec::new(), Vec::new());
+        for instance in enabled {
+            let (taken, writes) = self.effect(instance);
+            let mut agents: Vec<usize> = taken.moves.iter().map(|(agent, _)| *agent).collect();
+            if !self.is_pair(instance) {
+                agents = vec![self.instances[instance].agents[0]];
+            }
+            let free = agents.iter().all(|agent| !busy.contains(agent));
+            if free && writes.iter().all(|write| !written.contains(write)) {
+                written.extend(writes);
+                busy.extend(agents);
+                chosen.push(taken);
+            }
+        }
+        chosen
+    }
+
+    /// What a transition does, read on the present state, and all that it might write.
+    fn effect(&self, instance: usize) -> (Taken, Vec<(usize, VarRef)>) {
+        let transition = self.transition(instance);
+        let agents = self.instances[instance].agents;
+        let mut moves: Vec<(usize, ModeId)> =
+            transition.target.iter().map(|target| (agents[0], *target)).collect();
+        let (mut writes, mut all) = (Vec::new(), Vec::new());
+        let mut scope = self.scope(&self.world, instance);
+        let decided = self.instances[instance].boundary.decided(&mut scope, &self.world);
+        scope.decided = &decided;
+        if let Trigger::When(guard) | Trigger::After(_, Some(guard)) | Trigger::Every(_, Some(guard)) =
+            transition.trigger
+        {
+            self.bind_witnesses(guard, transition, &mut scope);
+        }
+        scope.decided = &[];
+        for action in &transition.actions {
+            if let Action::Goto { participant, target, .. } = action {
+                moves.push((agents[*participant], *target));
+            }
+        }
+        for (agent, target) in &moves {
+            let modes = &self.model.types[self.world.agents[*agent].ty].modes;
+            let mut own = Scope::new(self.model, &self.world, [*agent, *agent], false);
+            collect(&modes[self.world.agents[*agent].mode].exit, &mut own, &mut writes, &mut all);
+            collect(&modes[*target].entry, &mut own, &mut Vec::new(), &mut all);
+        }
+        collect(&transition.actions, &mut scope, &mut writes, &mut all);
+        (Taken { instance, moves, writes }, all)
+    }
+
+    /// Binds the agents that the actions may name: the lowest for which the quantifier holds (rule 2).
+    fn bind_witnesses(&self, guard: ExprId, transition: &Transition, scope: &mut Scope<'_>) {
+        match &self.model.exprs[guard].kind {
+            ExprKind::Apply(Op::And, operands) => {
+                operands.iter().for_each(|operand| self.bind_witnesses(*operand, transition, scope));
+            }
+            ExprKind::Quantifier { binder, set, other, filter, body, .. }
+                if transition.witnesses.contains(binder) =>
+            {
+                let outside = std::mem::take(&mut scope.bound);
+                let found = scope.witness(*binder, *set, *other, *filter, *body, true);
+                scope.bound = outside;
+                scope.bound.extend(found.map(|agent| (*binder, agent)));
+            }
+            _ => {}
+        }
+    }
+
+    /// One micro-step.
+    fn execute(&mut self, taken: Vec<Taken>) {
+        for taken in &taken {
+            self.log(taken);
+        }
+        for taken in &taken {
+            self.write(&taken.writes);
+            self.instances[taken.instance].armed = false;
+            if std::mem::take(&mut self.instances[taken.instance].pulse) {
+                self.instances[taken.instance].k += 1;
+            }
+        }
+        let moves: Vec<(usize, ModeId)> = taken.iter().flat_map(|taken| taken.moves.clone()).collect();
+        let mut writes = Vec::new();
+        for (agent, target) in &moves {
+            self.world.agents[*agent].mode = *target;
+            self.world.agents[*agent].entered = self.world.time;
+        }
+        for (agent, target) in &moves {
+            let entry = &self.model.types[self.world.agents[*agent].ty].modes[*target].entry;
+            collect(
+                entry,
+                &mut Scope::new(self.model, &self.world, [*agent, *agent], false),
+                &mut writes,
+                &mut Vec::new(),
+            );
+        }
+        self.write(&writes);
+        for instance in 0..self.instances.len() {
+            let fired = taken.iter().any(|taken| taken.instance == instance);
+            let own = self.instances[instance].agents[0];
+            let source = self.transition(instance).source;
+            let entered = !self.is_pair(instance) && moves.contains(&(own, source));
+            if entered {
+                let instance = &mut self.instances[instance];
+                (instance.armed, instance.k, instance.pulse) = (true, 1, false);
+            }
+            if fired || entered {
+                self.instances[instance].boundary = self.settle(instance);
+            }
+        }
+        self.arm();
+    }
+
+    /// What rule 3 says of the comparisons of a guard that has fired or been armed on their boundary.
+    fn settle(&self, instance: usize) -> Boundary {
+        let guard = match self.transition(instance).trigger {
+            Trigger::When(guard) | Trigger::After(_, Some(guard)) => guard,
+            Trigger::After(_, None) | Trigger::Every(..) => return Boundary::default(),
+        };
+        Boundary::settle(self.scope(&self.world, instance), &self.world, guard)
+    }
+
+    fn log(&mut self, taken: &Taken) {
+        let agents = self.instances[taken.instance].agents;
+        let pair = self.is_pair(taken.instance);
+        let row = |agent, other, modes| Row {
+            time: self.world.time,
+            label: self.transition(taken.instance).label.clone(),
+            agent,
+            other,
+            modes,
+        };
+        let path = |agent: usize, mode: ModeId| {
+            self.model.types[self.world.agents[agent].ty].modes[mode].path.clone()
+        };
+        let mut rows = Vec::new();
+        for (agent, target) in &taken.moves {
+            let other = if *agent == agents[0] { agents[1] } else { agents[0] };
+            let modes = (path(*agent, self.world.agents[*agent].mode), path(*agent, *target));
+            rows.push(row(*agent, pair.then_some(other), Some(modes)));
+        }
+        if rows.is_empty() {
+            rows.push(row(agents[0], pair.then_some(agents[1]), None));
+        }
+        self.rows.extend(rows);
+    }
+}
+
+/// The values that a list of actions assigns, and all variables that it might write.
+fn collect(
+    actions: &[Action],
+    scope: &mut Scope<'_>,
+    writes: &mut Vec<(usize, VarRef, f64)>,
+    all: &mut Vec<(usize, VarRef)>,
+) {
+    for action in actions {
+        match action {
+            Action::Assign { agent, variable, value, .. } => {
+                let agent = scope.named(*agent);
+                writes.retain(|write| (write.0, write.1) != (agent, *variable));
+                writes.push((agent, *variable, scope.number(*value)));
+                all.push((agent, *variable));
+            }
+            Action::If { condition, then, otherwise } => {
+                let holds = scope.truth(*condition);
+                for (branch, goes) in [(then, holds), (otherwise, !holds)] {
+                    let mut branch_writes = Vec::new();
+                    collect(branch, scope, &mut branch_writes, all);
+                    if goes {
+                        writes.extend(branch_writes);
+                    }
+                }
+            }
+            Action::Goto { .. } => {}
+            Action::Stop { .. } => panic!("the generator writes no stop"),
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! The state of all agents at one time, and its flow by the classical method of Runge and Kutta.
+
+use std::cell::RefCell;
+
+use hyc::model::ir::{ModeId, Model, TypeId};
+
+use super::evaluate::Scope;
+
+/// All agents at one time.
+#[derive(Clone)]
+pub struct World {
+    /// s.
+    pub time: f64,
+    /// The states of all agents, one after the other.
+    pub states: Vec<f64>,
+    /// What else there is to know of the agents.
+    pub agents: Vec<Agent>,
+    /// What is added to the rate of state k, times k + 1: asks how robust a model is.
+    pub nudge: f64,
+}
+
+/// What stays as it is while an agent flows.
+#[derive(Clone)]
+pub struct Agent {
+    /// Its type.
+    pub ty: TypeId,
+    /// Its mode.
+    pub mode: ModeId,
+    /// When it entered it, s.
+    pub entered: f64,
+    /// Its first state in [`World::states`].
+    pub first: usize,
+    /// Values of its parameters.
+    pub params: Vec<f64>,
+    /// Values of its discrete variables.
+    pub discretes: Vec<f64>,
+    /// Where its links lead.
+    pub links: Vec<Option<usize>>,
+}
+
+impl World {
+    /// The agents of `system { }` before their entry actions.
+    pub fn new(model: &Model, nudge: f64) -> Self {
+        let mut world = Self { time: 0.0, states: Vec::new(), agents: Vec::new(), nudge };
+        for agent in &model.population.agents {
+            world.agents.push(Agent {
+                ty: agent.ty,
+                mode: agent.mode,
+                entered: 0.0,
+                first: world.states.len(),
+                params: agent.params.clone(),
+                discretes: agent.discretes.clone(),
+                links: agent.links.clone(),
+            });
+            world.states.extend(&agent.states);
+        }
+        world
+    }
+
+    /// The modes that an agent is in, outermost first.
+    pub fn modes_of(&self, model: &Model, agent: usize) -> Vec<ModeId> {
+        let modes = &model.types[self.agents[agent].ty].modes;
+        let mut path = vec![self.agents[agent].mode];
+        while let Some(parent) = modes[path[0]].parent {
+            path.insert(0, parent);
+        }
+        path
+    }
+
+    /// The rates of all states, and which way the branches in them went.
+    pub fn rates(&self, model: &Model) -> (Vec<f64>, Vec<bool>) {
+        let mut rates: Vec<f64> = (1..=self.states.len()).map(|k| self.nudge * k as f64).collect();
+        let branches = RefCell::new(Vec::new());
+        for (k, agent) in self.agents.iter().enumerate() {
+            for mode in self.modes_of(model, k) {
+                for (state, rate, _) in &model.types[agent.ty].modes[mode].flow {
+                    let mut scope = Scope::new(model, self, [k, k], false);
+                    scope.branches = Some(&branches);
+                    rates[agent.first + state] += scope.number(*rate);
+                }
+            }
+        }
+        (rates, branches.into_inner())
+    }
+
+    /// The world one step of Runge and Kutta later, at a time given by the caller.
+    pub fn flow(&self, model: &Model, time: f64) -> World {
+        let h = time - self.time;
+        let mut stage = self.clone();
+        let mut ahead = |share: f64, rates: &[f64]| {
+            stage.time = self.time + share * h;
+            for ((x, start), rate) in stage.states.iter_mut().zip(&self.states).zip(rates) {
+                *x = start + share * h * rate;
+            }
+            stage.rates(model).0
+        };
+        let k1 = self.rates(model).0;
+        let k2 = ahead(0.5, &k1);
+        let k3 = ahead(0.5, &k2);
+        let k4 = ahead(1.0, &k3);
+        stage.time = time;
+        for (i, x) in stage.states.iter_mut().enumerate() {
+            *x = self.states[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+        }
+        stage
+    }
+}
