@@ -58,6 +58,8 @@ pub struct Reads {
     pub slots: Vec<SlotReads>,
     /// Whether it reads the time.
     pub time: bool,
+    /// The auxiliary columns that are read: slot and column, rising.
+    pub columns: Vec<(usize, usize)>,
 }
 
 impl Reads {
@@ -68,11 +70,16 @@ impl Reads {
             match *instruction {
                 Instruction::Time { .. } => reads.time = true,
                 Instruction::Load { slot, row, column, .. } => {
-                    reads.include(slot as usize, row, column as usize + 1)
+                    reads.include(slot as usize, row, column as usize + 1);
+                    if row == Row::Aux {
+                        reads.columns.push((slot as usize, column as usize));
+                    }
                 }
                 Instruction::Apply { .. } => {}
             }
         }
+        reads.columns.sort_unstable();
+        reads.columns.dedup();
         reads
     }
 

@@ -8,7 +8,7 @@ use crate::runtime::advance::cut;
 use crate::runtime::engine::{Engine, StopRequest};
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::guards::Origin;
-use crate::runtime::population::{ABSENT, Slots};
+use crate::runtime::population::Slots;
 use crate::runtime::present::Depth;
 use crate::runtime::truth;
 
@@ -76,7 +76,8 @@ impl Engine<'_, '_> {
             self.exit(&change, &mut effect)?;
             effect.moves.push(change);
         }
-        self.run_list(&transition.actions, slots, &transition.label, &mut effect)?;
+        let own = self.guards.roots(instance);
+        self.run_list(&transition.actions, slots, &own, &transition.label, &mut effect)?;
         Ok(effect)
     }
 
@@ -103,7 +104,7 @@ impl Engine<'_, '_> {
         for &mode in &change.left {
             let node = &self.program.types[ty].modes[mode];
             let slots = self.agents.slots(&node.exit.frame, &[change.agent]);
-            self.run_list(&node.exit, &slots, &node.path, effect)?;
+            self.run_list(&node.exit, &slots, &[change.agent], &node.path, effect)?;
         }
         Ok(())
     }
@@ -112,17 +113,18 @@ impl Engine<'_, '_> {
         &mut self,
         list: &ActionList,
         slots: &Slots,
+        own: &[usize],
         by: &str,
         effect: &mut Effect,
     ) -> Result<(), Failure> {
-        self.run_steps(list, &list.steps, slots, by, effect)
+        self.run_steps((list, &list.steps), slots, own, by, effect)
     }
 
     fn run_steps(
         &mut self,
-        list: &ActionList,
-        steps: &[ActionStep],
+        (list, steps): (&ActionList, &[ActionStep]),
         slots: &Slots,
+        own: &[usize],
         by: &str,
         effect: &mut Effect,
     ) -> Result<(), Failure> {
@@ -137,8 +139,10 @@ impl Engine<'_, '_> {
                     effect.writes.push(write);
                 }
                 ActionStep::If { condition, then, otherwise } => {
-                    let holds = truth::test(&self.agents, &mut self.present, condition, &list.frame, slots);
-                    self.run_steps(list, if holds { then } else { otherwise }, slots, by, effect)?;
+                    let holds =
+                        truth::test(&self.agents, &mut self.present, condition, &list.frame, slots, own);
+                    let taken = if holds { then } else { otherwise };
+                    self.run_steps((list, taken), slots, own, by, effect)?;
                 }
                 ActionStep::Goto { slot, target, .. } => {
                     let change = self.route(slots[*slot], 0, *target);
@@ -181,33 +185,32 @@ impl Engine<'_, '_> {
             }
         }
         self.present.forget();
-        for effect in effects {
-            for change in &effect.moves {
-                self.run_entries(change.agent, &change.entered, &mut written)?;
-                written.moves.push(change.clone());
-            }
-        }
+        let moves: Vec<Move> = effects.iter().flat_map(|effect| effect.moves.iter().cloned()).collect();
+        let entries: Vec<(usize, &[usize])> =
+            moves.iter().map(|change| (change.agent, change.entered.as_slice())).collect();
+        self.run_entries(&entries, &mut written)?;
+        written.moves = moves;
         self.regroup(&mut written);
         self.set_locks(written.restarted.iter().copied());
         Ok(written)
     }
 
-    /// Entry actions of modes, each reading what the ones before it wrote.
+    /// Entry actions of the modes that agents enter, outer modes first; those of one depth read what the ones above wrote,
+    /// and nothing of each other.
     pub fn run_entries(
         &mut self,
-        agent: usize,
-        entered: &[usize],
+        entries: &[(usize, &[usize])],
         written: &mut Written,
     ) -> Result<(), Failure> {
-        let ty = self.agents.agents[agent].ty;
-        for &mode in entered {
-            let node = &self.program.types[ty].modes[mode];
-            if node.entry.steps.is_empty() {
-                continue;
-            }
-            let slots = self.agents.slots(&node.entry.frame, &[agent]);
+        let depth = entries.iter().map(|(_, entered)| entered.len()).max().unwrap_or(0);
+        for level in 0..depth {
             let mut effect = Effect::default();
-            self.run_list(&node.entry, &slots, &node.path, &mut effect)?;
+            for &(agent, entered) in entries {
+                let Some(&mode) = entered.get(level) else { continue };
+                let node = &self.program.types[self.agents.agents[agent].ty].modes[mode];
+                let slots = self.agents.slots(&node.entry.frame, &[agent]);
+                self.run_list(&node.entry, &slots, &[agent], &node.path, &mut effect)?;
+            }
             for write in &effect.writes {
                 self.write(write, written);
             }
@@ -273,9 +276,8 @@ impl Engine<'_, '_> {
         for reader in self.agents.readers(agent) {
             let flow = self.agents.flow(reader);
             let slots = self.agents.slots(&flow.frame, &[reader]);
-            let reads = &self.program.kernel(flow.rates).reads().slots;
-            let reads_it = reads.iter().zip(&slots).any(|(reads, &slot)| slot == agent && reads.aux > column);
-            if reads_it && agent != ABSENT {
+            let inputs = self.agents.flow_inputs(reader);
+            if inputs.iter().any(|&(slot, input)| input == column && slots[slot] == agent) {
                 self.restart(reader, written);
             }
         }

@@ -159,6 +159,12 @@ impl Stepper {
         loop {
             let left = self.time_end - t;
             let (step, end) = if h >= left * (1.0 - 1e-12) { (left, self.time_end) } else { (h, t + h) };
+            if end == self.time_end && end <= t + 2.0 * ulp(t) {
+                // Not a step, but the end: what is left of the run cannot be told from none.
+                self.try_step(agents, group, slots, t, step);
+                self.rows.x_new.copy_from_slice(&self.x);
+                return Ok((step, end));
+            }
             if end <= t + 2.0 * ulp(t) {
                 let non_finite = !self.rows.x_new.iter().chain(&self.rows.error).all(|v| v.is_finite());
                 return Err(self.culprit(agents, group, non_finite));
@@ -349,9 +355,13 @@ fn kink_time(
         let reach = 2.0 * f64::EPSILON * until.abs();
         let known = Known { truth, closed, slack: 0.0, settled: false, reach };
         let mut curve = AtomCurve::new(agents, atom, slots, curves);
-        match first_flip(&mut curve, start, until, known, pieces_max) {
-            Search::None => None,
-            Search::Flip(flip) => Some(flip.time),
+        let mut from = start;
+        loop {
+            match first_flip(&mut curve, from, until, known, pieces_max) {
+                Search::None => return None,
+                Search::Flip(flip) => return Some(flip.time),
+                Search::Until(reached) => from = reached,
+            }
         }
     };
     match &kink.kind {

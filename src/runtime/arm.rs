@@ -86,7 +86,8 @@ impl<'p> Engine<'p, '_> {
         };
         let slots = self.guards.slots(&self.agents, instance);
         let value = truth::value(&self.agents, &mut self.present, function, &slots);
-        if !(value >= least && value < f64::INFINITY) {
+        let stands_still = value != 0.0 && self.present.time + value == self.present.time;
+        if !(value >= least && value < f64::INFINITY) || stands_still {
             let place = self.place(slots[0]);
             return Err(Reason::BadDelay { place, value, span: transition.span }.into());
         }
@@ -174,7 +175,10 @@ impl<'p> Engine<'p, '_> {
         let mut jet = [0.0; 3];
         kernel.eval(&self.present.views(&self.agents, slots), self.present.time, &mut jet);
         let state = &mut self.guards.atoms[index];
-        let band = state.slack.max(jet[1].abs() * time_resolution(self.present.time)).max(rounding);
+        // Beside a pole the rate says nothing of how near zero is.
+        let by_rate =
+            state.slack.max(jet[1].abs() * time_resolution(self.present.time)).min(1e-6 * (1.0 + g.abs()));
+        let band = by_rate.max(rounding);
         if g.abs() > band {
             return g < 0.0;
         }

@@ -9,14 +9,18 @@ use crate::runtime::solve::roots::{Curve, Known, Search, first_flip};
 use crate::runtime::solve::{time_resolution, ulp};
 use crate::runtime::truth::{self, depth_read};
 
+/// A run without an end that gets here will not stop by itself, s.
+pub const ENDLESS: f64 = 1e15;
+
 /// How often at most a comparison is looked at before it tries again to sleep.
 const BACKOFF_MAX: u16 = 64;
 
 impl Engine<'_, '_> {
-    /// Certifies every atom up to the cover at least.
+    /// Certifies every atom up to the cover at least; without a cover, up to what happens next.
     pub fn certify_up_to(&mut self, cover: f64) {
         while let Some(&due) = self.queues.uncertified.peek() {
-            if due.time >= cover {
+            let enough = if cover == f64::INFINITY { (self.next_cause() + 1.0).min(ENDLESS) } else { cover };
+            if due.time >= enough {
                 return;
             }
             self.queues.uncertified.pop();
@@ -51,6 +55,10 @@ impl Engine<'_, '_> {
                 to = to.min(self.groups.groups[self.agents.agents[slots[slot]].group].clock);
             }
         }
+        if to == f64::INFINITY {
+            // Nothing but the time is read, and the run has no end: a stretch at a time.
+            to = from + from.max(1.0);
+        }
         let kernel = self.program.kernel(atom.value);
         let absent = atom.slots.iter().any(|&slot| slots[slot] == ABSENT);
         if absent && truth::value(&self.agents, &mut self.present, atom.value, &slots).is_nan() {
@@ -73,6 +81,7 @@ impl Engine<'_, '_> {
         let mut curve = AtomCurve::new(&self.agents, atom, &slots, &mut self.curves);
         match first_flip(&mut curve, from, to, known, self.limits.pieces_max) {
             Search::None => self.certified(index, to),
+            Search::Until(until) => self.certified(index, until),
             Search::Flip(flip) => {
                 self.n_undecided += u64::from(flip.undecided);
                 let state = &mut self.guards.atoms[index];

@@ -44,22 +44,22 @@ impl Engine<'_, '_> {
             .map(|due| self.guards.atoms[due.number as usize].instance)
             .chain(schedules.iter().filter(|due| due.time == first).map(|due| due.number))
             .collect();
-        let joins = |engine: &Self, instance: u32, time: f64| {
-            time == first || seeds.iter().any(|&seed| engine.share_an_agent(seed, instance))
-        };
-        let (mut now, mut time) = (Vec::new(), first);
-        for due in schedules {
-            if joins(self, due.number, due.time) {
-                time = due.time;
-                now.push(due);
-            } else {
-                self.queues.schedules.push(due);
-            }
+        let (now, later): (Vec<Due>, Vec<Due>) = schedules.into_iter().partition(|due| due.time == first);
+        let shares =
+            |engine: &Self, instance: u32| seeds.iter().any(|&seed| engine.share_an_agent(seed, instance));
+        let awaited =
+            later.iter().filter(|due| now.is_empty() && shares(self, due.number)).map(|due| due.time);
+        let awaited = awaited.min_by(f64::total_cmp);
+        self.queues.schedules.extend(later);
+        if let Some(scheduled) = awaited {
+            self.postpone(flips, first, scheduled);
+            return Ok(());
         }
+        let mut time = first;
         let (mut changed, mut near) = (Vec::new(), first);
         for due in flips {
             let index = due.number as usize;
-            if joins(self, self.guards.atoms[index].instance, due.time) {
+            if due.time == first || shares(self, self.guards.atoms[index].instance) {
                 near = near.min(self.guards.atoms[index].near);
                 changed.push((index, due.time));
             } else {
@@ -85,11 +85,13 @@ impl Engine<'_, '_> {
         let mut claims = false;
         for &instance in &concerned {
             if self.enabled(instance) {
-                candidates.push(Candidate { instance, pulse: false });
+                candidates.push(Candidate { instance, pulse: None });
             }
             claims |= matches!(self.guards.definition(instance).origin, Origin::Claim(_));
         }
-        candidates.retain(|candidate| !candidate.pulse || self.truths().holds(candidate.instance, Side::At));
+        candidates.retain(|candidate| {
+            candidate.pulse.is_none() || self.truths().holds(candidate.instance, Side::At)
+        });
         if !candidates.is_empty() {
             self.instant(candidates)?;
         }
@@ -100,6 +102,17 @@ impl Engine<'_, '_> {
             self.calm(instance);
         }
         Ok(())
+    }
+
+    /// Roots near a scheduled time join it: they wait until then.
+    fn postpone(&mut self, flips: Vec<Due>, first: f64, scheduled: f64) {
+        for mut due in flips {
+            if due.time == first {
+                due.time = scheduled;
+                self.guards.atoms[due.number as usize].flip = scheduled;
+            }
+            self.queues.flips.push(due);
+        }
     }
 
     fn pop_flips(&mut self, window: f64) -> Vec<Due> {
@@ -201,6 +214,6 @@ impl Engine<'_, '_> {
         }
         state.periods += 1;
         self.queue_schedule(instance);
-        Some(Candidate { instance, pulse: true })
+        Some(Candidate { instance, pulse: Some(self.guards.instances[instance as usize].arming) })
     }
 }

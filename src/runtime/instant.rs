@@ -1,5 +1,9 @@
 //! One instant: micro-steps until nothing is enabled (rule 4), then the claims about the state that results (rule 8).
 
+use std::collections::BTreeSet;
+
+use rustc_hash::FxHashMap;
+
 use crate::base::Span;
 use crate::codegen::program::{ClaimKind, Target, Trigger};
 use crate::runtime::act::{Effect, Written, claims};
@@ -17,8 +21,8 @@ use crate::runtime::truth::Side;
 pub struct Candidate {
     /// Which.
     pub instance: u32,
-    /// At a time of its `every`.
-    pub pulse: bool,
+    /// At a time of its `every`, scheduled by this arming.
+    pub pulse: Option<u32>,
 }
 
 /// A candidate with what orders it (rule 4).
@@ -35,7 +39,7 @@ impl Engine<'_, '_> {
     pub fn instant(&mut self, mut candidates: Vec<Candidate>) -> Result<(), Failure> {
         self.repetitions.instant += 1;
         let mut micro = 0;
-        let mut touched_agents: Vec<usize> = Vec::new();
+        let mut touched_agents: BTreeSet<usize> = BTreeSet::new();
         let mut concerned: Vec<u32> = candidates.iter().map(|candidate| candidate.instance).collect();
         loop {
             candidates.sort_unstable();
@@ -57,7 +61,7 @@ impl Engine<'_, '_> {
             concerned.extend(fired.iter().chain(&woken));
             candidates = passed;
             let enabled = woken.iter().copied().filter(|&instance| self.enabled(instance));
-            candidates.extend(enabled.map(|instance| Candidate { instance, pulse: false }));
+            candidates.extend(enabled.map(|instance| Candidate { instance, pulse: None }));
             micro += 1;
             self.release_crossings(&woken);
         }
@@ -79,8 +83,10 @@ impl Engine<'_, '_> {
 
     fn may_fire(&self, candidate: Candidate) -> bool {
         let state = &self.guards.instances[candidate.instance as usize];
-        if candidate.pulse {
-            return state.active && self.truths().holds(candidate.instance, Side::At);
+        if let Some(arming) = candidate.pulse {
+            return state.active
+                && state.arming == arming
+                && self.truths().holds(candidate.instance, Side::At);
         }
         self.enabled(candidate.instance)
     }
@@ -101,20 +107,19 @@ impl Engine<'_, '_> {
             ));
             by_priority.then(by_place)
         });
-        let mut taken: Vec<(usize, Target, u32)> = Vec::new();
+        let mut taken: FxHashMap<(usize, Target), u32> = FxHashMap::default();
         let (mut chosen, mut passed) = (Vec::new(), Vec::new());
         for ranked in ranked {
             let claims = claims(self, ranked.candidate.instance, &ranked.slots);
-            let conflict =
-                claims.iter().find_map(|claim| taken.iter().find(|taken| (taken.0, taken.1) == *claim));
-            match conflict.copied() {
-                Some((agent, _, first)) => {
+            let conflict = claims.iter().find_map(|claim| taken.get(claim).map(|&first| (claim.0, first)));
+            match conflict {
+                Some((agent, first)) => {
                     self.note_contest(agent, first, ranked.candidate.instance);
                     passed.push(ranked.candidate);
                 }
                 None => {
                     let instance = ranked.candidate.instance;
-                    taken.extend(claims.into_iter().map(|(agent, target)| (agent, target, instance)));
+                    taken.extend(claims.into_iter().map(|claim| (claim, instance)));
                     chosen.push(ranked);
                 }
             }
@@ -150,7 +155,7 @@ impl Engine<'_, '_> {
         &mut self,
         chosen: &[Ranked],
         micro: usize,
-        touched: &mut Vec<usize>,
+        touched: &mut BTreeSet<usize>,
     ) -> Result<Written, Failure> {
         let mut effects: Vec<Effect> = Vec::with_capacity(chosen.len());
         for ranked in chosen {
@@ -166,8 +171,7 @@ impl Engine<'_, '_> {
                 .map(|write| write.agent)
                 .chain(effect.moves.iter().map(|change| change.agent));
             for agent in agents {
-                if !touched.contains(&agent) {
-                    touched.push(agent);
+                if touched.insert(agent) {
                     self.recorder.before_write(&self.agents, &mut self.present, agent, self.observer)?;
                 }
             }

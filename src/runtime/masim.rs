@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::runtime::act::Written;
 use crate::runtime::advance::{Advance, Obstacle};
+use crate::runtime::certify::ENDLESS;
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::guards::Origin;
@@ -19,9 +20,6 @@ use crate::runtime::stiffness::fastest_rate;
 
 /// How many rounds of the loop pass between two looks at the interrupt flag.
 const ROUNDS: u64 = 1024;
-
-/// A run without an end that gets here will not stop by itself, s.
-const ENDLESS: f64 = 1e15;
 
 impl Engine<'_, '_> {
     /// Runs to the end.
@@ -72,25 +70,30 @@ impl Engine<'_, '_> {
         for group in self.groups.divide(&mut self.agents, &all, 0.0, &|_| None) {
             self.queue_clock(group);
         }
-        for &agent in &all {
-            let modes = &self.program.types[self.agents.agents[agent].ty].modes;
-            let above =
-                std::iter::successors(Some(self.agents.agents[agent].mode), |&mode| modes[mode].parent);
-            let mut entered: Vec<usize> = above.collect();
-            entered.reverse();
-            self.run_entries(agent, &entered, &mut written)?;
-        }
+        let entered: Vec<Vec<usize>> = all.iter().map(|&agent| self.modes_of(agent)).collect();
+        let entries: Vec<(usize, &[usize])> =
+            all.iter().zip(&entered).map(|(&agent, modes)| (agent, &modes[..])).collect();
+        self.run_entries(&entries, &mut written)?;
         self.set_locks(written.restarted.iter().copied());
         self.recorder.begin(&self.agents, &mut self.present, self.observer)?;
         self.arm_all()?;
         let instances = 0..self.guards.instances.len() as u32;
         let enabled = instances.clone().filter(|&instance| self.enabled(instance));
-        let candidates = enabled.map(|instance| Candidate { instance, pulse: false }).collect();
+        let candidates = enabled.map(|instance| Candidate { instance, pulse: None }).collect();
         self.instant(candidates)?;
         let claims: Vec<u32> = instances
             .filter(|&instance| matches!(self.guards.definition(instance).origin, Origin::Claim(_)))
             .collect();
         self.judge_claims(&claims)
+    }
+
+    /// The modes an agent is in, outer ones first.
+    fn modes_of(&self, agent: usize) -> Vec<usize> {
+        let modes = &self.program.types[self.agents.agents[agent].ty].modes;
+        let above = std::iter::successors(Some(self.agents.agents[agent].mode), |&mode| modes[mode].parent);
+        let mut inside: Vec<usize> = above.collect();
+        inside.reverse();
+        inside
     }
 
     /// The end: the last rows, and the state of every agent at T (rule 12).
@@ -139,6 +142,7 @@ impl Engine<'_, '_> {
         match advance {
             Advance::Moved => Ok(()),
             Advance::Turned(hits) => {
+                self.present.forget();
                 for hit in &hits {
                     if let Finding::Zeno(_) = self.repetitions.turned(hit.agent, hit.kink, cover) {
                         return Err(self.chattering(hit.agent, hit.kink, cover).into());

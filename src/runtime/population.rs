@@ -45,6 +45,8 @@ pub struct Agents<'p> {
     linked_from: Vec<Vec<usize>>,
     /// The longest chain of links that any frame follows.
     chain_max: usize,
+    /// For each type and mode, the auxiliary columns that the flow depends on, by itself or through its kinks.
+    flow_inputs: Vec<Vec<Vec<(usize, usize)>>>,
 }
 
 impl<'p> Agents<'p> {
@@ -77,7 +79,14 @@ impl<'p> Agents<'p> {
                 linked_from[*target].push(number);
             }
         }
-        Self { program, agents, of_type, linked_from, chain_max: longest_chain(program) }
+        Self {
+            program,
+            agents,
+            of_type,
+            linked_from,
+            chain_max: longest_chain(program),
+            flow_inputs: flow_inputs(program),
+        }
     }
 
     /// How many there are.
@@ -94,6 +103,12 @@ impl<'p> Agents<'p> {
     /// The equations an agent follows.
     pub fn flow(&self, agent: usize) -> &'p Flow {
         self.mode(agent).flow.as_ref().expect("an agent is in a leaf mode, and leaves have flows")
+    }
+
+    /// The auxiliary columns, by slot, that the active flow of an agent depends on.
+    pub fn flow_inputs(&self, agent: usize) -> &[(usize, usize)] {
+        let agent = &self.agents[agent];
+        &self.flow_inputs[agent.ty][agent.mode]
     }
 
     /// The columns of an agent's type.
@@ -148,6 +163,21 @@ impl<'p> Agents<'p> {
     pub fn name(&self, agent: usize) -> String {
         self.program.population.agent_name(agent)
     }
+}
+
+/// The auxiliary columns that each flow depends on. Locks are not among those of its kinks: events do not write them.
+fn flow_inputs(program: &Program) -> Vec<Vec<Vec<(usize, usize)>>> {
+    let of_flow = |flow: &Flow| {
+        let mut columns = program.kernel(flow.rates).reads().columns.clone();
+        for kink in &flow.kinks {
+            columns.extend_from_slice(&program.kernel(kink.initial).reads().columns);
+        }
+        columns.sort_unstable();
+        columns.dedup();
+        columns
+    };
+    let of_mode = |mode: &ModeSystem| mode.flow.as_ref().map_or_else(Vec::new, of_flow);
+    program.types.iter().map(|ty| ty.modes.iter().map(of_mode).collect()).collect()
 }
 
 /// The longest chain of links in any frame of the program.

@@ -1,5 +1,7 @@
 //! Rows of trajectories (rule 16): samples at k d, or every accepted step and both sides of every event.
 
+use std::collections::BTreeSet;
+
 use crate::codegen::program::{Layout, LetValue, Program, Record, VarRef};
 use crate::runtime::failure::Failure;
 use crate::runtime::observe::{Cell, Observer, Row};
@@ -125,7 +127,7 @@ impl<'p> Recorder<'p> {
         agents: &Agents<'_>,
         present: &mut Present,
         micro: usize,
-        touched: &[usize],
+        touched: &BTreeSet<usize>,
         observer: &mut dyn Observer,
     ) -> Result<(), Failure> {
         let before = if self.last_instant.0 == present.time { self.last_instant.1 } else { 0 };
@@ -219,7 +221,7 @@ impl<'p> Recorder<'p> {
                         number(value, definition.column.boolean, definition.column.factor)
                     }
                     LetValue::Condition(guard) => {
-                        Cell::Bool(truth::test(agents, present, guard, &definition.frame, &slots))
+                        Cell::Bool(truth::test(agents, present, guard, &definition.frame, &slots, &[agent]))
                     }
                 }
             }

@@ -160,10 +160,17 @@ impl Truths<'_, '_> {
 }
 
 /// Whether a condition holds for the rows of the present instant, comparison by comparison (tests in actions, lets).
-pub fn test(agents: &Agents<'_>, present: &mut Present, guard: &Guard, frame: &Frame, slots: &Slots) -> bool {
+/// `own` are the agents that `other` leaves out.
+pub fn test(
+    agents: &Agents<'_>,
+    present: &mut Present,
+    guard: &Guard,
+    frame: &Frame,
+    slots: &Slots,
+    own: &[usize],
+) -> bool {
     let mut slots = slots.clone();
-    let roots = [slots[0]];
-    test_condition(agents, present, guard, frame, &guard.condition, &mut slots, &roots)
+    test_condition(agents, present, guard, frame, &guard.condition, &mut slots, own)
 }
 
 fn test_condition(

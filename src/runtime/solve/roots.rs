@@ -56,6 +56,8 @@ pub enum Search {
     None,
     /// The first change.
     Flip(Flip),
+    /// No change up to here; the limit of pieces was reached.
+    Until(f64),
 }
 
 /// Which way f goes from a point on the boundary.
@@ -69,27 +71,47 @@ pub enum Direction {
     Along,
 }
 
-/// g with its sign turned so that the present truth is f > 0. A g that is no number counts as false.
+/// g with its sign turned so that the present truth is f > 0. A g that is no number counts as false; where zero belongs
+/// to the present truth, it counts as the least number above it.
 struct Turned<'a> {
     curve: &'a mut dyn Curve,
     turned: bool,
+    keeps_zero: bool,
+    /// A bound of rounding above this is none: it is the height of a pole.
+    rounding_max: f64,
 }
 
-impl Turned<'_> {
+impl<'a> Turned<'a> {
+    fn new(curve: &'a mut dyn Curve, s: f64, e: f64, known: &Known) -> Self {
+        let keeps_zero = known.closed == known.truth;
+        let mut f = Self { curve, turned: known.truth, keeps_zero, rounding_max: 0.0 };
+        let size = [s, e]
+            .map(|t| f.curve.jet(t)[0].abs())
+            .into_iter()
+            .filter(|size| size.is_finite())
+            .fold(1.0, f64::max);
+        f.rounding_max = 1e-6 * size;
+        f
+    }
+
     fn jet(&mut self, t: f64) -> [f64; 3] {
         let jet = self.curve.jet(t);
         if jet[0].is_nan() {
             return [if self.turned { f64::NEG_INFINITY } else { f64::INFINITY }, f64::NAN, f64::NAN];
         }
-        if self.turned { jet.map(|v| -v) } else { jet }
+        let mut jet = if self.turned { jet.map(|v| -v) } else { jet };
+        if jet[0] == 0.0 && self.keeps_zero {
+            jet[0] = f64::from_bits(1);
+        }
+        jet
     }
 
     fn value(&mut self, t: f64) -> f64 {
         self.jet(t)[0]
     }
 
-    fn undefined(&mut self, t: f64) -> bool {
-        self.curve.jet(t)[0].is_nan()
+    fn undefined_all_over(&mut self, s: f64, e: f64) -> bool {
+        (0..5).all(|k| self.curve.jet(s + (e - s) * 0.25 * f64::from(k))[0].is_nan())
     }
 
     fn range(&mut self, s: f64, e: f64) -> [Interval; 3] {
@@ -102,7 +124,11 @@ impl Turned<'_> {
         if !self.curve.smooth() {
             return [0.0; 3];
         }
-        self.range(t, t).map(|bound| bound.hi - bound.lo)
+        let width = self
+            .range(t, t)
+            .map(|bound| bound.hi - bound.lo)
+            .map(|width| if width.is_finite() { width } else { 0.0 });
+        [if width[0] <= self.rounding_max { width[0] } else { 0.0 }, width[1], width[2]]
     }
 }
 
@@ -122,7 +148,8 @@ const PIECES_PATIENT: u32 = 24;
 
 /// The first change of truth in (s, e], or at s where the boundary decides so. At most `pieces_max` pieces are looked at.
 pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_max: u32) -> Search {
-    let mut f = Turned { curve, turned: known.truth };
+    let mut f = Turned::new(curve, s, e, &known);
+    let (start, small) = (s, (e - s) / 256.0);
     let mut pieces = vec![(s, e, Entry::Unsettled)];
     let mut known_here = known;
     let mut looked_at = 0;
@@ -140,12 +167,13 @@ pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_ma
         match look(&mut f, s, e, entry, &known) {
             Look::Clear => {}
             Look::Flip(flip) => return Search::Flip(flip),
-            Look::Divide
-                if looked_at >= PIECES_PATIENT && f.undefined(s) && f.undefined(middle) && f.undefined(e) => {
-            }
+            Look::Divide if looked_at >= PIECES_PATIENT && e - s < small && f.undefined_all_over(s, e) => {}
+            Look::Divide if looked_at >= pieces_max && s > start => return Search::Until(s),
             Look::Divide if looked_at < pieces_max && divisible(s, e) => {
-                let at_middle = if f.value(middle) > 0.0 { Entry::Clear } else { Entry::Unsettled };
-                pieces.push((middle, e, at_middle));
+                let at_middle = f.value(middle);
+                // Near a boundary a number that rounding may have made is not clear of it.
+                let clear = at_middle > 0.0 && (entry == Entry::Clear || at_middle > f.rounding(middle)[0]);
+                pieces.push((middle, e, if clear { Entry::Clear } else { Entry::Unsettled }));
                 pieces.push((s, middle, entry));
             }
             Look::Divide => {
@@ -201,7 +229,7 @@ fn decide(jet: &[f64; 3], rounding: &[f64; 3]) -> Direction {
 /// Settles the start of a search: clear, on the boundary going up, or changing at once.
 fn enter(f: &mut Turned<'_>, s: f64, known: Known) -> Result<Entry, Flip> {
     let jet = f.jet(s);
-    let band = known.slack.max(jet[1].abs() * time_resolution(s));
+    let band = known.slack.max(jet[1].abs() * time_resolution(s)).min(f.rounding_max);
     if jet[0] > band || jet[0].is_nan() {
         return Ok(Entry::Clear);
     }
@@ -245,7 +273,7 @@ enum Look {
 
 fn look(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, known: &Known) -> Look {
     let [f0, f1, f2] = f.range(s, e);
-    if f0.lo > 0.0 {
+    if f0.lo > 0.0 || f0.lo == 0.0 && f.keeps_zero {
         return Look::Clear;
     }
     if f1.lo >= 0.0 {
@@ -255,11 +283,11 @@ fn look(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, known: &Known) -> Look
         return Look::Clear;
     }
     let at_end = f.jet(e);
-    if f1.hi <= 0.0 {
-        return match entry {
-            Entry::Clear => falling(f, s, e, &at_end, known),
-            Entry::Boundary | Entry::Unsettled => Look::Flip(Flip { time: s, near: s, undecided: false }),
-        };
+    if f1.hi <= 0.0 && entry == Entry::Clear {
+        return falling(f, s, e, &at_end, known);
+    }
+    if f1.hi < 0.0 {
+        return Look::Flip(Flip { time: s, near: s, undecided: false });
     }
     if f2.lo >= 0.0 {
         return convex(f, s, e, entry, &at_end, known);
@@ -302,6 +330,10 @@ fn due(f: &mut Turned<'_>, e: f64, at_end: &[f64; 3], known: &Known) -> bool {
 /// f'' >= 0: one minimum at most.
 fn convex(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, at_end: &[f64; 3], known: &Known) -> Look {
     if entry == Entry::Boundary {
+        let at_start = f.jet(s)[1];
+        if at_start < 0.0 && at_start < -f.rounding(s)[1] {
+            return Look::Flip(Flip { time: s, near: s, undecided: false });
+        }
         return Look::Clear;
     }
     if at_end[1] <= 0.0 {
@@ -348,7 +380,7 @@ fn concave(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, at_end: &[f64; 3], 
 /// A piece too small to divide, or one piece too many.
 fn undecided(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, touching: bool) -> Option<Flip> {
     let [at_start, at_end] = [f.value(s), f.value(e)];
-    let band = f.rounding(e)[0].max(f.jet(e)[1].abs() * time_resolution(e));
+    let band = f.rounding(e)[0].max(f.jet(e)[1].abs() * time_resolution(e)).min(f.rounding_max);
     if entry == Entry::Boundary && at_end.abs() <= band {
         return None;
     }
