@@ -230,7 +230,7 @@ fn decide(jet: &[f64; 3], rounding: &[f64; 3]) -> Direction {
 fn enter(f: &mut Turned<'_>, s: f64, known: Known) -> Result<Entry, Flip> {
     let jet = f.jet(s);
     let band = known.slack.max(jet[1].abs() * time_resolution(s)).min(f.rounding_max);
-    if jet[0] > band || jet[0].is_nan() {
+    if jet[0] > band || jet[0] == f64::INFINITY {
         return Ok(Entry::Clear);
     }
     let rounding = f.rounding(s);
