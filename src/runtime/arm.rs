@@ -86,7 +86,7 @@ impl<'p> Engine<'p, '_> {
         };
         let slots = self.guards.slots(&self.agents, instance);
         let value = truth::value(&self.agents, &mut self.present, function, &slots);
-        let stands_still = value != 0.0 && self.present.time + value == self.present.time;
+        let stands_still = least > 0.0 && value < time_resolution(self.present.time);
         if !(value >= least && value < f64::INFINITY) || stands_still {
             let place = self.place(slots[0]);
             return Err(Reason::BadDelay { place, value, span: transition.span }.into());

@@ -76,6 +76,7 @@ impl Engine<'_, '_> {
             closed: closed(atom.relation, state.truth),
             slack: state.slack,
             settled: state.settled,
+            grazed: state.grazed == from,
             reach: if blocked { time_resolution(to) } else { 2.0 * ulp(to) },
         };
         let mut curve = AtomCurve::new(&self.agents, atom, &slots, &mut self.curves);
@@ -88,6 +89,9 @@ impl Engine<'_, '_> {
                 state.flip = flip.time;
                 state.near = flip.near;
                 state.touch = flip.undecided;
+                if flip.undecided {
+                    state.grazed = flip.time;
+                }
                 state.version += 1;
                 self.queues.flips.push(Due { time: flip.time, number: index as u32, version: state.version });
             }

@@ -229,7 +229,7 @@ impl Reason {
                 Diagnostic::error("HY0510", format!("a delay or period of {value} s"))
                     .label(*span, "of this transition")
                     .note(place.note())
-                    .help("a delay must be finite and at least 0, a period finite and above 0")
+                    .help("a delay must be finite and at least 0, a period finite and at least 1e-12 s")
             }
             Reason::NeverEnds { time } => {
                 Diagnostic::error("HY0511", "nothing can happen any more, and the run has no end")

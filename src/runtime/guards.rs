@@ -99,6 +99,8 @@ pub struct AtomState {
     pub flip: f64,
     /// Whether it changes only by coming within rounding of zero: then it may change back at once.
     pub touch: bool,
+    /// When it last did so, s.
+    pub grazed: f64,
     /// The last time before the flip at which the old truth holds, s.
     pub near: f64,
     /// See `Known::slack`.
@@ -188,6 +190,7 @@ impl<'p> Guards<'p> {
             flip: f64::INFINITY,
             near: 0.0,
             touch: false,
+            grazed: f64::NEG_INFINITY,
             slack: 0.0,
             settled: false,
             stride: 0.0,

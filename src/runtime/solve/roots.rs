@@ -34,6 +34,8 @@ pub struct Known {
     /// Whether the truth has been settled at the start itself, by a root or by the rates there: if it lies on the
     /// boundary, it is not asked again which way it goes.
     pub settled: bool,
+    /// Whether it grazed zero at the start itself: it does not do so again before it has left it.
+    pub grazed: bool,
     /// A root that is due within this time after the end counts as at the end, s.
     pub reach: f64,
 }
@@ -161,6 +163,7 @@ pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_ma
             };
             known_here.slack = 0.0;
             known_here.settled = false;
+            known_here.grazed = false;
         }
         looked_at += 1;
         let middle = 0.5 * (s + e);
@@ -245,7 +248,8 @@ fn enter(f: &mut Turned<'_>, s: f64, known: Known) -> Result<Entry, Flip> {
         return Err(flip);
     }
     let direction = decide(&jet, &rounding);
-    if direction != Direction::Up && !known.touching() && turns_back(f, s, &jet, band.max(rounding[0])) {
+    let passes = known.grazed || !known.touching();
+    if direction != Direction::Up && passes && turns_back(f, s, &jet, band.max(rounding[0])) {
         return Ok(Entry::Boundary);
     }
     match direction {
