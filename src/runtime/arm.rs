@@ -177,7 +177,7 @@ impl<'p> Engine<'p, '_> {
         let state = &mut self.guards.atoms[index];
         // Beside a pole the rate says nothing of how near zero is.
         let by_rate =
-            state.slack.max(jet[1].abs() * time_resolution(self.present.time)).min(1e-6 * (1.0 + g.abs()));
+            state.slack.max(jet[1].abs() * time_resolution(self.present.time)).min(1e-3 * (1.0 + g.abs()));
         let band = by_rate.max(rounding);
         if g.abs() > band || !jet[1].is_finite() {
             return g < 0.0;

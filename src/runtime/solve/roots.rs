@@ -92,7 +92,7 @@ impl<'a> Turned<'a> {
             .into_iter()
             .filter(|size| size.is_finite())
             .fold(1.0, f64::max);
-        f.rounding_max = 1e-6 * size;
+        f.rounding_max = 1e-3 * size;
         f
     }
 
