@@ -358,7 +358,7 @@ fn kink_time(
         let mut from = start;
         loop {
             match first_flip(&mut curve, from, until, known, pieces_max) {
-                Search::None => return None,
+                Search::None | Search::Undecided => return None,
                 Search::Flip(flip) => return Some(flip.time),
                 Search::Until(reached) => from = reached,
             }

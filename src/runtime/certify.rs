@@ -83,6 +83,10 @@ impl Engine<'_, '_> {
         match first_flip(&mut curve, from, to, known, self.limits.pieces_max) {
             Search::None => self.certified(index, to),
             Search::Until(until) => self.certified(index, until),
+            Search::Undecided => {
+                self.n_undecided += 1;
+                self.certified(index, to);
+            }
             Search::Flip(flip) => {
                 self.n_undecided += u64::from(flip.undecided);
                 let state = &mut self.guards.atoms[index];

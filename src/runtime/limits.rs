@@ -22,7 +22,7 @@ impl Default for Limits {
             zeno_events: 100,
             steps_max: 10_000_000_000,
             guards_max: 50_000_000,
-            pieces_max: 100_000,
+            pieces_max: 10_000,
         }
     }
 }

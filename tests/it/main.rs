@@ -20,6 +20,7 @@ mod rules;
 mod instants;
 mod crowds;
 mod grazes;
+mod poles;
 mod closed_forms;
 mod bumper;
 mod accuracy;

@@ -60,6 +60,8 @@ pub enum Search {
     Flip(Flip),
     /// No change up to here; the limit of pieces was reached.
     Until(f64),
+    /// The limit of pieces was reached, and hardly any way was made.
+    Undecided,
 }
 
 /// Which way f goes from a point on the boundary.
@@ -151,7 +153,8 @@ const PIECES_PATIENT: u32 = 24;
 /// The first change of truth in (s, e], or at s where the boundary decides so. At most `pieces_max` pieces are looked at.
 pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_max: u32) -> Search {
     let mut f = Turned::new(curve, s, e, &known);
-    let (start, small) = (s, (e - s) / 256.0);
+    let (start, length) = (s, e - s);
+    let small = length / 256.0;
     let mut pieces = vec![(s, e, Entry::Unsettled)];
     let mut known_here = known;
     let mut looked_at = 0;
@@ -171,7 +174,8 @@ pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_ma
             Look::Clear => {}
             Look::Flip(flip) => return Search::Flip(flip),
             Look::Divide if looked_at >= PIECES_PATIENT && e - s < small && f.undefined_all_over(s, e) => {}
-            Look::Divide if looked_at >= pieces_max && s > start => return Search::Until(s),
+            Look::Divide if looked_at >= pieces_max && s - start > 1e-6 * length => return Search::Until(s),
+            Look::Divide if looked_at >= pieces_max => return Search::Undecided,
             Look::Divide if looked_at < pieces_max && divisible(s, e) => {
                 let at_middle = f.value(middle);
                 // Near a boundary a number that rounding may have made is not clear of it.
