@@ -86,3 +86,16 @@ fn a_branch_of_a_flow_that_reads_anothers_discrete_follows_it() {
     );
     all_near(&run.times("F.a"), &[1.3], 1e-11);
 }
+
+#[test]
+fn a_touch_within_rounding_fires_once_each_time() {
+    // thrown up with 5 m/s under 10 m/s^2, it turns exactly at the guard
+    let run = simulate(
+        "agent B { state x = 1, v = 0  flow { x' = v  v' = -10 }
+           initial mode F { low: when x <= 0 -> G { x := 0  v := 5 } }
+           mode G { back: when x <= 0 -> F { x := 0  v := 5 }  up: when x >= 1.25 { } } }
+         system { b = B() }  run { until 5 }",
+    );
+    let first = 0.2_f64.sqrt();
+    all_near(&run.times("B.up"), &[first + 0.5, first + 2.5, first + 4.5], 1e-7);
+}

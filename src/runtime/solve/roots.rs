@@ -155,7 +155,10 @@ pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_ma
     let mut f = Turned::new(curve, s, e, &known);
     let (start, length) = (s, e - s);
     let small = length / 256.0;
-    let mut pieces = vec![(s, e, Entry::Unsettled)];
+    let mut pieces = vec![match beyond_graze(&mut f, s, e, &known) {
+        Some(clear) => (clear, e, Entry::Clear),
+        None => (s, e, Entry::Unsettled),
+    }];
     let mut known_here = known;
     let mut looked_at = 0;
     while let Some((s, e, mut entry)) = pieces.pop() {
@@ -201,6 +204,16 @@ pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_ma
         }
     }
     Search::None
+}
+
+/// Just beyond a zero that was grazed at s, where f rises: the search goes on from there.
+fn beyond_graze(f: &mut Turned<'_>, s: f64, e: f64, known: &Known) -> Option<f64> {
+    let beyond = s + 2.0 * time_resolution(s);
+    if !(known.grazed && known.touching() && beyond < e) {
+        return None;
+    }
+    let jet = f.jet(beyond);
+    (jet[0] > 0.0 && jet[1] > 0.0).then_some(beyond)
 }
 
 impl Known {
