@@ -307,3 +307,17 @@ impl StepCode {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{refused, unsupported};
+
+    /// No model and no machine at hand makes these: they are made here.
+    #[test]
+    fn what_cranelift_refuses_points_to_the_interpreter() {
+        insta::assert_debug_snapshot!([
+            unsupported(&"support for this target is not implemented"),
+            refused("Car.Drive flow", &"the function is too large"),
+        ]);
+    }
+}

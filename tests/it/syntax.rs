@@ -194,7 +194,9 @@ fn long_chains_are_flat() {
 #[test]
 fn a_file_beyond_the_limit_is_refused() {
     let text = " ".repeat(syntax::MAX_FILE_BYTES + 1);
-    assert_eq!(syntax::parse(FileId(0), &text).unwrap_err()[0].code, "HY0119");
+    let errors = syntax::parse(FileId(0), &text).unwrap_err();
+    assert_eq!(errors[0].code, "HY0119");
+    insta::assert_debug_snapshot!("a_file_beyond_the_limit", errors);
 }
 
 #[test]
