@@ -40,6 +40,13 @@ fn on_a_plateau_at_zero_a_strict_comparison_is_false() {
 }
 
 #[test]
+fn a_jump_onto_zero_and_off_it_again() {
+    // floors 0, 1, 2, ...: remainders 0, 1, 0.94, 0.88, ...: below one but for x in [1, 2)
+    all_near(&times("floor(mod(floor(x), 1.06)) < 0.271", 6.0), &[0.0, 2.0], 1e-11);
+    all_near(&times("floor(mod(round(x), 1.06)) < 0.271", 6.0), &[0.0, 1.5], 1e-11);
+}
+
+#[test]
 fn a_search_that_needs_many_pieces_misses_nothing() {
     let run = simulate(
         "agent A { state x = 0  flow { x' = 0 }

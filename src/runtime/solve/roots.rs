@@ -294,7 +294,9 @@ enum Look {
 
 fn look(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, known: &Known) -> Look {
     let [f0, f1, f2] = f.range(s, e);
-    if f0.lo > 0.0 || f0.lo == 0.0 && f.keeps_zero {
+    // Where g can jump, a plateau at zero is known to a few bits only.
+    let plateau = if f.curve.smooth() { 0.0 } else { 16.0 * f64::EPSILON * f0.hi.abs().max(1.0) };
+    if f0.lo > 0.0 || f0.lo >= -plateau && f.keeps_zero {
         return Look::Clear;
     }
     if f1.lo >= 0.0 {
@@ -405,7 +407,8 @@ fn undecided(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, touching: bool) -
     if entry == Entry::Boundary && at_end.abs() <= band {
         return None;
     }
-    if at_end < 0.0 {
+    let onto_plateau = at_end == 0.0 && at_start > 0.0 && !f.keeps_zero;
+    if at_end < 0.0 || onto_plateau && f.value(e + 2.0 * time_resolution(e)) <= 0.0 {
         let (mut near, mut time) = (s, s.next_up());
         while time < e && f.value(time) > 0.0 {
             (near, time) = (time, time.next_up());
