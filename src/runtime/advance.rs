@@ -74,13 +74,7 @@ pub struct Stepper {
 impl Stepper {
     /// A stepper up to `time_end`.
     pub fn new(agents: &Agents<'_>, accuracy: Accuracy, time_end: f64, limits: &Limits) -> Self {
-        let width = agents
-            .program
-            .types
-            .iter()
-            .map(|ty| ty.layout.n_aux().max(ty.layout.n_states))
-            .max()
-            .unwrap_or(0);
+        let width = agents.row_width();
         let counts = Counts { steps_of_type: vec![0; agents.program.types.len()], ..Counts::default() };
         Self {
             accuracy,

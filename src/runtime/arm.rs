@@ -74,11 +74,7 @@ impl<'p> Engine<'p, '_> {
 
     /// Reads the delay or period of an instance that is being armed, and puts its first time into the queue.
     fn set_schedule(&mut self, instance: u32) -> Result<(), Failure> {
-        let transition = match self.guards.definition(instance).origin {
-            Origin::Transition(transition) => transition,
-            Origin::Pair(pair) => &pair.transition,
-            Origin::Claim(_) => return Ok(()),
-        };
+        let Some(transition) = self.guards.definition(instance).origin.transition() else { return Ok(()) };
         let (function, least) = match &transition.trigger {
             Trigger::When(_) => return Ok(()),
             Trigger::After { delay, .. } => (*delay, 0.0),
@@ -319,12 +315,8 @@ impl<'p> Engine<'p, '_> {
         if !(state.active && state.armed) {
             return false;
         }
-        let waits = match self.guards.definition(instance).origin {
-            Origin::Transition(transition) => &transition.trigger,
-            Origin::Pair(pair) => &pair.transition.trigger,
-            Origin::Claim(_) => return false,
-        };
-        match waits {
+        let Some(transition) = self.guards.definition(instance).origin.transition() else { return false };
+        match &transition.trigger {
             Trigger::Every { .. } => false,
             Trigger::After { .. } => state.aged && self.truths().holds(instance, Side::At),
             Trigger::When(_) => self.truths().holds(instance, Side::At),

@@ -24,13 +24,7 @@ pub struct CurveRows {
 impl CurveRows {
     /// Room for the widest agent type.
     pub fn new(agents: &Agents<'_>) -> Self {
-        let width = agents
-            .program
-            .types
-            .iter()
-            .map(|ty| ty.layout.n_aux().max(ty.layout.n_states))
-            .max()
-            .unwrap_or(0);
+        let width = agents.row_width();
         Self { absent: vec![f64::NAN; width], absent_box: vec![Interval::WHOLE; width], ..Self::default() }
     }
 }

@@ -50,13 +50,7 @@ const TRIES: usize = 4;
 impl Enclosures {
     /// No boxes yet.
     pub fn new(agents: &Agents<'_>, accuracy: Accuracy) -> Self {
-        let width = agents
-            .program
-            .types
-            .iter()
-            .map(|ty| ty.layout.n_aux().max(ty.layout.n_states))
-            .max()
-            .unwrap_or(0);
+        let width = agents.row_width();
         Self {
             accuracy,
             kept: Vec::new(),

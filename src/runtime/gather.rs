@@ -201,12 +201,8 @@ impl Engine<'_, '_> {
 
     /// A scheduled time of an instance has come: its delay is over, or its period has passed once more.
     fn scheduled(&mut self, instance: u32) -> Option<Candidate> {
-        let trigger = match self.guards.definition(instance).origin {
-            Origin::Transition(transition) => &transition.trigger,
-            Origin::Pair(pair) => &pair.transition.trigger,
-            Origin::Claim(_) => return None,
-        };
-        let periodic = matches!(trigger, Trigger::Every { .. });
+        let transition = self.guards.definition(instance).origin.transition()?;
+        let periodic = matches!(transition.trigger, Trigger::Every { .. });
         let state = &mut self.guards.instances[instance as usize];
         if !periodic {
             state.aged = true;

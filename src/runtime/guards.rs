@@ -21,6 +21,17 @@ pub enum Origin<'p> {
     Claim(&'p ClaimSystem),
 }
 
+impl<'p> Origin<'p> {
+    /// The transition, of an agent type or of an interaction; none for a claim.
+    pub fn transition(self) -> Option<&'p TransitionSystem> {
+        match self {
+            Origin::Transition(transition) => Some(transition),
+            Origin::Pair(pair) => Some(&pair.transition),
+            Origin::Claim(_) => None,
+        }
+    }
+}
+
 /// A guard as the program says it.
 #[derive(Clone, Debug)]
 pub struct Definition<'p> {

@@ -111,6 +111,12 @@ impl<'p> Agents<'p> {
         &self.flow_inputs[agent.ty][agent.mode]
     }
 
+    /// The columns of the longest row of any agent type.
+    pub fn row_width(&self) -> usize {
+        let widths = self.program.types.iter().map(|ty| ty.layout.n_aux().max(ty.layout.n_states));
+        widths.max().unwrap_or(0)
+    }
+
     /// The columns of an agent's type.
     pub fn layout(&self, agent: usize) -> &'p Layout {
         &self.program.types[self.agents[agent].ty].layout

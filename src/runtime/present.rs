@@ -45,8 +45,7 @@ struct Rows {
 impl Present {
     /// No rows yet.
     pub fn new(agents: &Agents<'_>) -> Self {
-        let width = agents.program.types.iter().map(|ty| ty.layout.n_aux().max(ty.layout.n_states)).max();
-        let absent = vec![f64::NAN; width.unwrap_or(0)];
+        let absent = vec![f64::NAN; agents.row_width()];
         Self {
             time: f64::NAN,
             rhs_evaluations: 0,

@@ -2,7 +2,7 @@
 
 use crate::codegen::kernel::Kernel;
 use crate::codegen::program::{Condition, Frame, FunctionId, Guard, Quantified, Relation};
-use crate::runtime::guards::{Guards, Origin, allowed};
+use crate::runtime::guards::{Guards, allowed};
 use crate::runtime::population::{Agents, Slots};
 use crate::runtime::present::{Depth, Present};
 
@@ -95,11 +95,7 @@ impl Truths<'_, '_> {
     pub fn witnesses(&self, instance: u32, side: Side) -> Slots {
         let mut slots = self.guards.slots(self.agents, instance);
         let definition = self.guards.definition(instance);
-        let wanted: &[usize] = match definition.origin {
-            Origin::Transition(transition) => &transition.witnesses,
-            Origin::Pair(pair) => &pair.transition.witnesses,
-            Origin::Claim(_) => &[],
-        };
+        let wanted = definition.origin.transition().map_or(&[][..], |transition| &transition.witnesses);
         if wanted.is_empty() {
             return slots;
         }
