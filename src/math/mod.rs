@@ -2,7 +2,8 @@
 //!
 //! In: nothing but numbers. Out: [`Op`], the table of operators whose [`Op::eval`] is *the* meaning that the
 //! interpreter, constant folding and machine code share bit for bit; [`elementary`], the functions behind it;
-//! [`Interval`], bounds on an operator over a box; [`runge_kutta`], the coefficients that steps are made of.
+//! [`Interval`], bounds on an operator over a box; [`runge_kutta`], the coefficients that steps are made of; [`draw`],
+//! random numbers.
 //! Promised: the same bits on every CPU and for every thread count, because nothing here looks at the CPU's
 //! features and no multiplication is fused into an addition unless it is written so.
 
@@ -10,6 +11,7 @@ pub mod elementary;
 pub mod op;
 pub mod interval;
 pub mod runge_kutta;
+pub mod draw;
 
 pub use interval::Interval;
 pub use op::{Binary, Op, Unary};

@@ -79,7 +79,7 @@ impl<'a> Context<'a> {
         written: &mut Written,
     ) -> Option<Action> {
         if given.kind == GivenKind::Draw {
-            self.refuse("random draws by `~`", given.value.span);
+            self.refuse("random draws by `~` in actions", given.value.span);
             return None;
         }
         let found = self.place(scope, place);

@@ -118,7 +118,15 @@ impl<'a> Context<'a> {
         self.wrong(span)
     }
 
-    fn check_count(&mut self, function: &str, least: usize, most: usize, found: usize, span: Span) -> bool {
+    /// Whether there are as many arguments as there must be; a diagnostic if not.
+    pub fn check_count(
+        &mut self,
+        function: &str,
+        least: usize,
+        most: usize,
+        found: usize,
+        span: Span,
+    ) -> bool {
         let fits = (least..=most).contains(&found);
         if !fits {
             let function = function.to_string();

@@ -1,8 +1,9 @@
-//! Pass 4: defaults of parameters and initial values of variables, in an order in which each finds what it reads.
+//! Pass 5: defaults of parameters and initial values of variables, in an order in which each finds what it reads.
 
 use rustc_hash::FxHashSet;
 
 use super::context::{Context, Home, Scope};
+use super::draw::Given;
 use super::error::{NameError, ValueError};
 use super::ir::{ExprId, ExprKind, TypeId, VarRef};
 use super::operands::for_each_operand;
@@ -15,11 +16,11 @@ use crate::syntax::ast::{self, AgentItem, GivenKind, VariableKind};
 #[derive(Default)]
 pub(super) struct Initials {
     /// Defaults of the numeric parameters.
-    pub params: Vec<Option<ExprId>>,
+    pub params: Vec<Option<Given>>,
     /// Initial values of the states.
-    pub states: Vec<Option<ExprId>>,
+    pub states: Vec<Option<Given>>,
     /// Initial values of the discrete variables.
-    pub discretes: Vec<Option<ExprId>>,
+    pub discretes: Vec<Option<Given>>,
     /// States and discretes, each after those that its initial value reads.
     pub order: Vec<VarRef>,
 }
@@ -70,14 +71,16 @@ impl<'a> Context<'a> {
         initials
     }
 
-    fn initial_of(&mut self, ty: TypeId, variable: &'a ast::Variable, slot: Slot) -> Option<ExprId> {
+    fn initial_of(&mut self, ty: TypeId, variable: &'a ast::Variable, slot: Slot) -> Option<Given> {
         let given = variable.initial.as_ref()?;
-        if given.kind == GivenKind::Draw {
-            self.refuse("random draws by `~`", given.value.span);
-            return None;
-        }
         let what = format!("the initial value of `{}`", variable.name.text);
-        self.initial(ty, &given.value, slot, &what, Allowed::All)
+        match given.kind {
+            GivenKind::Value => self.initial(ty, &given.value, slot, &what, Allowed::All),
+            GivenKind::Draw => {
+                let draw = self.lower_draw(&mut Scope::of(Home::Initial(ty)), &given.value, slot)?;
+                self.if_known(Given::Draw(draw), &what, Allowed::All)
+            }
+        }
     }
 
     fn initial(
@@ -87,23 +90,30 @@ impl<'a> Context<'a> {
         slot: Slot,
         what: &str,
         allowed: Allowed,
-    ) -> Option<ExprId> {
+    ) -> Option<Given> {
         let value = self.lower_into(&mut Scope::of(Home::Initial(ty)), expr, slot, what);
         if value.ty == Ty::Wrong {
             return None;
         }
-        if let Err((read, span)) = self.reads(value.id, allowed) {
-            self.report(ValueError::NotInitial { what: what.to_string(), read, span });
-            return None;
+        self.if_known(Given::Value(value.id), what, allowed)
+    }
+
+    /// What is given; none, and a diagnostic, if it reads what is not known while the agent is made.
+    fn if_known(&mut self, given: Given, what: &str, allowed: Allowed) -> Option<Given> {
+        match self.reads(given, allowed) {
+            Ok(_) => Some(given),
+            Err((read, span)) => {
+                self.report(ValueError::NotInitial { what: what.to_string(), read, span });
+                None
+            }
         }
-        Some(value.id)
     }
 
     /// The states and discretes that an initial value reads, or the first thing that it may not read.
-    fn reads(&self, root: ExprId, allowed: Allowed) -> Result<Vec<VarRef>, (&'static str, Span)> {
+    fn reads(&self, given: Given, allowed: Allowed) -> Result<Vec<VarRef>, (&'static str, Span)> {
         let mut reads = Vec::new();
         let mut seen = FxHashSet::default();
-        let mut work = vec![root];
+        let mut work = given.exprs();
         while let Some(id) = work.pop() {
             if !seen.insert(id) {
                 continue;
@@ -159,7 +169,7 @@ impl<'a> Context<'a> {
         };
         let values = initials.states.iter().chain(&initials.discretes);
         let needs = values
-            .map(|value| match value.map(|id| self.reads(id, Allowed::All)) {
+            .map(|value| match value.map(|given| self.reads(given, Allowed::All)) {
                 Some(Ok(reads)) => reads.iter().filter_map(node).collect(),
                 Some(Err(_)) | None => Vec::new(),
             })

@@ -206,6 +206,19 @@ pub struct AgentType {
     pub transitions: Vec<Transition>,
 }
 
+impl AgentType {
+    /// The name of a variable.
+    pub fn variable_name(&self, variable: VarRef) -> &str {
+        match variable {
+            VarRef::State(number) => &self.states[number].name,
+            VarRef::Discrete(number) => &self.discretes[number].name,
+            VarRef::Param(number) => &self.params[number].name,
+            VarRef::Link(number) => &self.links[number].name,
+            VarRef::Let(number) => &self.lets[number].name,
+        }
+    }
+}
+
 /// A variable of an agent type.
 #[derive(Clone, Debug)]
 pub struct Variable {

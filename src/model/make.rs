@@ -1,6 +1,7 @@
 //! Makes the agents that have been planned.
 
 use super::context::Context;
+use super::draw::Given;
 use super::error::{LimitError, SystemError, ValueError};
 use super::evaluate::Known;
 use super::initial::Initials;
@@ -8,6 +9,7 @@ use super::ir::{Block, ExprId, Instance, Type, VarRef, Variable};
 use super::limits;
 use super::plan::{Plan, Reference, Source};
 use crate::base::Diagnostic;
+use crate::math::draw::Key;
 
 impl<'a> Context<'a> {
     /// Makes all agents; stops a block at its first problem.
@@ -49,7 +51,7 @@ impl<'a> Context<'a> {
             links: Vec::with_capacity(plan.links.len()),
         };
         for (number, source) in plan.params.iter().enumerate() {
-            let value = self.value(plan, *source, &agent, index)?;
+            let value = self.value(plan, VarRef::Param(number), *source, &agent, block, index)?;
             let variable = &self.model.types[plan.ty].params[number];
             if value.is_nan() || (variable.ty == Type::Int && value.is_infinite()) {
                 return Err(self.not_finite(plan, *source, variable, block, index, value));
@@ -62,7 +64,7 @@ impl<'a> Context<'a> {
                 VarRef::Discrete(number) => plan.discretes[number],
                 VarRef::Param(_) | VarRef::Link(_) | VarRef::Let(_) => continue,
             };
-            let value = self.value(plan, source, &agent, index)?;
+            let value = self.value(plan, variable, source, &agent, block, index)?;
             let ty = &self.model.types[plan.ty];
             let (place, declared) = match variable {
                 VarRef::Discrete(number) => (&mut agent.discretes[number], &ty.discretes[number]),
@@ -95,26 +97,36 @@ impl<'a> Context<'a> {
     fn value(
         &mut self,
         plan: &Plan<'a>,
+        variable: VarRef,
         source: Source,
         agent: &Instance,
+        block: &Block,
         index: usize,
     ) -> Result<f64, Box<Diagnostic>> {
-        match source {
-            Source::Column(column) => Ok(plan.columns[column][index]),
-            Source::Argument(id) | Source::Declared(id) => {
-                let known = Known {
-                    index: index as f64,
-                    params: &agent.params,
-                    states: &agent.states,
-                    discretes: &agent.discretes,
-                };
-                self.evaluate(id, &known)
+        let given = match source {
+            Source::Column(column) => return Ok(plan.columns[column][index]),
+            Source::Missing => return Ok(f64::NAN),
+            Source::Argument(given) | Source::Declared(given) => given,
+        };
+        let known = Known {
+            index: index as f64,
+            params: &agent.params,
+            states: &agent.states,
+            discretes: &agent.discretes,
+        };
+        match given {
+            Given::Value(id) => self.evaluate(id, &known),
+            Given::Draw(draw) => {
+                let agent = instance_name(block, index);
+                let variable = self.model.types[plan.ty].variable_name(variable).to_string();
+                let key = Key { seed: self.model.run.seed, agent: &agent, variable: &variable };
+                self.draw(&draw, &known, key)
             }
-            Source::Missing => Ok(f64::NAN),
         }
     }
 
-    fn evaluate(&mut self, id: ExprId, known: &Known) -> Result<f64, Box<Diagnostic>> {
+    /// The value of an expression, within the budget.
+    pub fn evaluate(&mut self, id: ExprId, known: &Known) -> Result<f64, Box<Diagnostic>> {
         let value = self.evaluator.evaluate(&self.model, id, known);
         value.ok_or_else(|| Box::new(LimitError::Steps { span: self.model.exprs[id].span }.into()))
     }
@@ -129,7 +141,7 @@ impl<'a> Context<'a> {
         value: f64,
     ) -> Box<Diagnostic> {
         let span = match source {
-            Source::Argument(id) | Source::Declared(id) => self.model.exprs[id].span,
+            Source::Argument(given) | Source::Declared(given) => self.model.exprs[given.exprs()[0]].span,
             Source::Column(_) | Source::Missing => plan.item.span,
         };
         let what = format!("the initial value of `{}.{}`", instance_name(block, index), variable.name);

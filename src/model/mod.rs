@@ -23,6 +23,7 @@ mod expression;
 mod resolve;
 mod call;
 mod overrides;
+mod draw;
 mod define;
 mod actions;
 mod transition;
@@ -87,7 +88,8 @@ pub fn check(ast: &Ast, sources: &mut SourceMap, files: &mut dyn Files, settings
     transition::fill_interactions(&mut context);
     presence::check_presence(&mut context);
     let initials = initial::initial_values(&mut context);
-    population::populate(&mut context, ast, files, &initials);
     run::settle(&mut context, ast, settings);
+    population::populate(&mut context, ast, files, &initials);
+    run::trajectories(&mut context, ast, settings);
     context.finish()
 }

@@ -1,5 +1,6 @@
 //! What is known of the agents of a block before they are made.
 
+use super::draw::Given;
 use super::ir::{ExprId, ModeId, TypeId};
 use crate::base::Span;
 use crate::syntax::ast;
@@ -7,12 +8,12 @@ use crate::syntax::ast;
 /// Where the value of a variable comes from.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Source {
-    /// An expression of `system`.
-    Argument(ExprId),
+    /// An argument in `system`.
+    Argument(Given),
     /// A column of the data, by its place among those that are read.
     Column(usize),
-    /// An expression of the agent type.
-    Declared(ExprId),
+    /// What the agent type says.
+    Declared(Given),
     /// Reported as missing or wrong.
     Missing,
 }

@@ -1,4 +1,4 @@
-//! Pass 5: the agents at t = 0, from `system` and its data files.
+//! Pass 7: the agents at t = 0, from `system` and its data files.
 //!
 //! Every block is planned first: where each of its values comes from, how many agents it has. Only then is anything
 //! made, so that a block may refer to one behind it, and a count beyond the limit costs no memory.
@@ -9,6 +9,7 @@ use rustc_hash::FxHashMap;
 
 use super::Files;
 use super::context::{Context, Home, Member, Scope};
+use super::draw::Given;
 use super::error::{FileError, LimitError, SystemError, TypeError, ValueError};
 use super::initial::Initials;
 use super::ir::{Block, ModeId, TypeId};
@@ -131,10 +132,6 @@ impl<'a> Context<'a> {
                 });
             }
             let member = self.agents[plan.ty.index()].members.get(name).map(|(member, _)| *member);
-            if arg.given.kind == GivenKind::Draw {
-                self.refuse("random draws by `~`", arg.span);
-                continue;
-            }
             let names = &self.agents[plan.ty.index()];
             let (slot, source) = match member {
                 Some(Member::Param(number)) => (names.params[number], &mut plan.params[number]),
@@ -147,18 +144,32 @@ impl<'a> Context<'a> {
                     continue;
                 }
             };
-            let what = format!("`{name}`");
-            let value = self.lower_into(&mut Scope::of(Home::Construction), &arg.given.value, slot, &what);
-            if value.ty == Ty::Wrong {
-                continue;
-            }
-            if self.facts[value.id.index()].pure {
-                *source = Source::Argument(value.id);
-            } else {
-                self.report(ValueError::NotConstant { what, span: arg.given.value.span });
+            if let Some(given) = self.argument_value(arg, slot) {
+                *source = Source::Argument(given);
             }
         }
         given
+    }
+
+    /// What an argument gives; none, and a diagnostic, if it is wrong or not a constant.
+    fn argument_value(&mut self, arg: &'a ast::NamedArg, slot: Slot) -> Option<Given> {
+        let (what, value) = (format!("`{}`", arg.name.text), &arg.given.value);
+        let mut scope = Scope::of(Home::Construction);
+        let given = match arg.given.kind {
+            GivenKind::Value => {
+                let value = self.lower_into(&mut scope, value, slot, &what);
+                if value.ty == Ty::Wrong {
+                    return None;
+                }
+                Given::Value(value.id)
+            }
+            GivenKind::Draw => Given::Draw(self.lower_draw(&mut scope, value, slot)?),
+        };
+        if given.exprs().iter().all(|id| self.facts[id.index()].pure) {
+            return Some(given);
+        }
+        self.report(ValueError::NotConstant { what, span: value.span });
+        None
     }
 
     fn unknown_argument(&mut self, ty: TypeId, name: &ast::Name, is_let: bool) -> Option<String> {

@@ -1,4 +1,4 @@
-//! Pass 6: no flow reads an agent that may not be there, and no rate depends on itself.
+//! Pass 4: no flow reads an agent that may not be there, and no rate depends on itself.
 //!
 //! A loop over all expressions, operands first. For each it finds which links must lead somewhere if the value is to
 //! be one (`need`), which certainly do if it is true (`if_true`) and if it is false (`if_false`): a link that is tested by `if`,

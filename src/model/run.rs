@@ -1,4 +1,4 @@
-//! Pass 7: `run { }`, with the command line laid over it.
+//! Passes 6 and 8: `run { }`, with the command line laid over it.
 
 use rustc_hash::FxHashMap;
 
@@ -52,13 +52,9 @@ const SEED: Number = Number {
     allowed: |value| value.fract() == 0.0 && (0.0..=9_007_199_254_740_992.0).contains(&value),
 };
 
-/// Fills in the settings.
+/// Fills in the settings that are numbers or names.
 pub(super) fn settle<'a>(context: &mut Context<'a>, file: &'a ast::Ast, settings: &Settings) {
-    let runs = file.items.iter().filter_map(|item| match item {
-        Item::Run(run) => Some(run),
-        _ => None,
-    });
-    for run in runs.take(1) {
+    if let Some(run) = only_run(file) {
         context.model.run.span = Some(run.span);
         let mut set = FxHashMap::default();
         for setting in &run.settings {
@@ -66,6 +62,27 @@ pub(super) fn settle<'a>(context: &mut Context<'a>, file: &'a ast::Ast, settings
         }
     }
     context.lay_over(settings);
+}
+
+/// Fills in the trajectories to write, once the agents are known.
+pub(super) fn trajectories<'a>(context: &mut Context<'a>, file: &'a ast::Ast, settings: &Settings) {
+    for setting in only_run(file).into_iter().flat_map(|run| &run.settings) {
+        if let RunSettingKind::Record { columns, period, file } = &setting.kind {
+            context.record(columns, period.as_ref(), file, setting.span);
+        }
+    }
+    if settings.record_all && context.model.run.records.is_empty() {
+        let record = context.record_of_everything();
+        context.model.run.records.push(record);
+    }
+}
+
+/// The `run` of a file; a second one is refused.
+fn only_run(file: &ast::Ast) -> Option<&ast::Run> {
+    file.items.iter().find_map(|item| match item {
+        Item::Run(run) => Some(run),
+        _ => None,
+    })
 }
 
 impl<'a> Context<'a> {
@@ -78,9 +95,7 @@ impl<'a> Context<'a> {
                 }
             }
             RunSettingKind::StopWhen(_) => self.refuse("`stop when` settings", item.span),
-            RunSettingKind::Record { columns, period, file } => {
-                self.record(columns, period.as_ref(), file, item.span)
-            }
+            RunSettingKind::Record { .. } => {}
             RunSettingKind::Output { name, file } if name.text == "events" => {
                 self.only_once("events", item.span, set);
                 self.file_name(file);
@@ -162,10 +177,6 @@ impl<'a> Context<'a> {
         }
         if let Some(seed) = settings.seed {
             self.model.run.seed = seed;
-        }
-        if settings.record_all && self.model.run.records.is_empty() {
-            let record = self.record_of_everything();
-            self.model.run.records.push(record);
         }
     }
 

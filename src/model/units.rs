@@ -23,6 +23,12 @@ impl Unit {
     /// The number one.
     pub const ONE: Unit = Unit { dimension: [0; 7], numerator: 1.0, denominator: 1.0 };
 
+    /// One over this unit.
+    pub fn inverse(&self) -> Unit {
+        let dimension = self.dimension.map(i8::saturating_neg);
+        Unit { dimension, numerator: self.denominator, denominator: self.numerator }
+    }
+
     /// A value in this unit, in SI.
     pub fn si(&self, value: f64) -> f64 {
         value * self.numerator / self.denominator

@@ -174,6 +174,12 @@ impl Case {
         self
     }
 
+    /// `--seed`
+    pub fn seed(mut self, seed: u64) -> Self {
+        self.settings.seed = Some(seed);
+        self
+    }
+
     /// `max_microsteps` and the like.
     pub fn limits(mut self, limits: Limits) -> Self {
         self.limits = limits;

@@ -25,3 +25,4 @@ mod closed_forms;
 mod bumper;
 mod accuracy;
 mod differential;
+mod draws;

@@ -3,3 +3,4 @@
 mod elementary;
 mod op;
 mod interval;
+mod draw;

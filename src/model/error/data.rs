@@ -43,6 +43,10 @@ pub(in crate::model) enum ValueError {
     NotInitial { what: String, read: &'static str, span: Span },
     /// A count that is not a whole number, or negative.
     BadCount { value: f64, span: Span },
+    /// `~` before something that is no distribution.
+    NotADistribution { span: Span },
+    /// A parameter that its distribution cannot have.
+    BadDraw { parameter: String, needs: &'static str, value: f64, variable: String, span: Span },
 }
 
 impl From<ValueError> for Diagnostic {
@@ -65,6 +69,18 @@ impl From<ValueError> for Diagnostic {
             ValueError::BadCount { value, span } => {
                 Diagnostic::error("HY0265", "the size of an array must be a whole number from 0 on")
                     .label(span, format!("this is {value}"))
+            }
+            ValueError::NotADistribution { span } => Diagnostic::error(
+                "HY0278",
+                "a distribution must stand behind `~`",
+            )
+            .label(span, "this is none")
+            .help(
+                "write `Uniform(a, b)`, `Normal(mean, sd)` or `Exponential(rate)`; a value is given by `=`",
+            ),
+            ValueError::BadDraw { parameter, needs, value, variable, span } => {
+                Diagnostic::error("HY0279", format!("{parameter} must be {needs}"))
+                    .label(span, format!("this is {value} where `{variable}` is drawn"))
             }
         }
     }
