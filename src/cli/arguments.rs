@@ -40,7 +40,10 @@ pub(super) struct RunArguments {
     /// What a false `assert` does to the exit code: 4, or 0
     #[arg(long = "assert", value_enum, default_value_t, value_name = "LEVEL")]
     pub(super) asserts: AssertLevel,
-    /// Print neither progress nor summary
+    /// Leave out warnings of this code (repeatable)
+    #[arg(long, value_name = "CODE")]
+    pub(super) allow: Vec<String>,
+    /// Print neither progress nor summary, and no warnings about the model
     #[arg(short, long)]
     pub(super) quiet: bool,
 }
@@ -116,12 +119,15 @@ pub(super) struct CheckArguments {
     /// Give a param another value, in its declared unit (repeatable)
     #[arg(short = 'p', long = "param", value_name = "NAME=VALUE", value_parser = pair)]
     pub(super) params: Vec<(String, String)>,
-    /// The form of the diagnostics; sarif is not built yet
+    /// The form of the diagnostics
     #[arg(long, value_enum, default_value_t)]
     pub(super) format: Format,
-    /// Take warnings for errors; not built yet
-    #[arg(long, value_name = "KIND")]
-    pub(super) deny: Option<String>,
+    /// Take warnings for errors: those of this code, or all with `warnings` (repeatable)
+    #[arg(long, value_name = "CODE")]
+    pub(super) deny: Vec<String>,
+    /// Leave out warnings of this code (repeatable; wins over --deny)
+    #[arg(long, value_name = "CODE")]
+    pub(super) allow: Vec<String>,
 }
 
 #[derive(Debug, Args)]
@@ -219,7 +225,7 @@ pub(super) enum Format {
     Text,
     /// For programs, on standard output
     Json,
-    /// Not built yet
+    /// For code hosts and editors, on standard output: SARIF 2.1.0
     Sarif,
 }
 

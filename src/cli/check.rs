@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 
 use super::arguments::{CheckArguments, Format};
 use super::input::{load, name_of, settings_with};
-use super::refusal::refuse_check;
-use super::terminal::{complain, say, tell};
-use super::{Exit, Refused};
+use super::terminal::{complain, say, say_aside, tell};
+use super::warnings::{Levels, count};
+use super::{Exit, Refused, sarif};
 use crate::base::{Diagnostic, SourceMap, Span};
 use crate::calculus;
 use crate::calculus::system::System;
@@ -16,17 +16,18 @@ use crate::model::Settings;
 
 /// Checks each model; the worst of them decides the exit code.
 pub(super) fn check(arguments: &CheckArguments) -> Result<Exit, Refused> {
-    refuse_check(arguments)?;
     let settings = settings_with(&arguments.params);
+    let levels = Levels::new(&arguments.allow, &arguments.deny)?;
     let mut worst = Exit::Fine;
     let mut found = Vec::new();
     for path in &arguments.models {
-        match check_one(path, &settings) {
+        match check_one(path, &settings, &levels) {
             Ok(checked) => {
                 worst = worst.max(checked.exit);
-                match arguments.format {
-                    Format::Text | Format::Sarif => tell_checked(path, &checked)?,
-                    Format::Json => found.push(model_json(path, &checked)),
+                if arguments.format == Format::Text {
+                    tell_checked(path, &checked)?;
+                } else {
+                    found.push((path, checked));
                 }
             }
             Err(refused) => {
@@ -35,10 +36,17 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<Exit, Refused> {
             }
         }
     }
-    if arguments.format == Format::Json {
-        let text = serde_json::to_string_pretty(&json!({ "models": found })).expect("every key is a string");
-        say(&(text + "\n"))?;
-    }
+    let log = match arguments.format {
+        Format::Text => return Ok(worst),
+        Format::Json => {
+            let models = found.iter().map(|(path, checked)| model_json(path, checked));
+            json!({ "models": models.collect::<Vec<_>>() })
+        }
+        Format::Sarif => {
+            sarif::log(found.iter().map(|(_, checked)| (&checked.sources, checked.diagnostics.as_slice())))
+        }
+    };
+    say(&(serde_json::to_string_pretty(&log).expect("every key is a string") + "\n"))?;
     Ok(worst)
 }
 
@@ -50,8 +58,9 @@ struct CheckedModel {
     exit: Exit,
 }
 
-fn check_one(path: &Path, settings: &Settings) -> Result<CheckedModel, Refused> {
+fn check_one(path: &Path, settings: &Settings, levels: &Levels) -> Result<CheckedModel, Refused> {
     let mut loaded = load(path, settings)?;
+    let mut exit = loaded.exit();
     let system = match loaded.model.as_ref().map(calculus::derive) {
         Some(Ok(system)) => Some(system),
         Some(Err(diagnostics)) => {
@@ -60,16 +69,29 @@ fn check_one(path: &Path, settings: &Settings) -> Result<CheckedModel, Refused> 
         }
         None => None,
     };
-    let exit = if system.is_some() { Exit::Fine } else { loaded.exit() };
-    let (sources, diagnostics) = (loaded.sources, loaded.diagnostics);
-    Ok(CheckedModel { sources, diagnostics, system, exit })
+    let mut found = loaded.diagnostics;
+    found.extend(loaded.warnings);
+    let diagnostics = levels.settle(&loaded.sources, found);
+    if system.is_some() {
+        let denied = diagnostics.iter().any(Diagnostic::is_error);
+        exit = if denied { Exit::ModelErrors } else { Exit::Fine };
+    }
+    Ok(CheckedModel { sources: loaded.sources, diagnostics, system, exit })
 }
 
-/// Diagnostics on standard error, one line for each sound model on standard output.
+/// Diagnostics and their number on standard error, one line for each model without errors on standard output.
 fn tell_checked(path: &Path, checked: &CheckedModel) -> Result<(), Refused> {
     tell(&checked.sources, &checked.diagnostics);
-    let Some(system) = &checked.system else { return Ok(()) };
-    let mut text = format!("{}: no errors\n", name_of(path));
+    let name = name_of(path);
+    let count = count(&checked.diagnostics);
+    let Some(system) = checked.system.as_ref().filter(|_| checked.exit == Exit::Fine) else {
+        say_aside(&format!("{name}: {}\n", count.unwrap_or_default()));
+        return Ok(());
+    };
+    let mut text = match count {
+        Some(count) => format!("{name}: no errors, {count}\n"),
+        None => format!("{name}: no errors\n"),
+    };
     for (label, symmetric) in interactions(system) {
         let pairs = if symmetric {
             "one flag for each unordered pair (the same when the two change places)"
@@ -93,7 +115,7 @@ fn model_json(path: &Path, checked: &CheckedModel) -> Value {
     let pairs = checked.system.iter().flat_map(interactions);
     json!({
         "model": name_of(path),
-        "ok": checked.system.is_some(),
+        "ok": checked.exit == Exit::Fine,
         "diagnostics": diagnostics.collect::<Vec<_>>(),
         "interactions": pairs
             .map(|(label, symmetric)| json!({ "transition": label, "unordered": symmetric }))

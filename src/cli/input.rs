@@ -35,6 +35,8 @@ pub(super) fn parse(path: &Path) -> Result<Parsed, Refused> {
 pub(super) struct Loaded {
     pub(super) sources: SourceMap,
     pub(super) diagnostics: Vec<Diagnostic>,
+    /// What is worth a warning in a model without errors.
+    pub(super) warnings: Vec<Diagnostic>,
     pub(super) model: Option<Model>,
     /// All files that were read.
     pub(super) inputs: Vec<PathBuf>,
@@ -56,11 +58,11 @@ pub(super) fn load(path: &Path, settings: &Settings) -> Result<Loaded, Refused> 
     let Parsed { mut sources, tree } = parse(path)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
     let mut files = Folder { folder, inputs: vec![path.to_path_buf()] };
-    let Checked { model, diagnostics } = match tree {
+    let Checked { model, diagnostics, warnings } = match tree {
         Ok(tree) => crate::model::check(&tree, &mut sources, &mut files, settings),
-        Err(diagnostics) => Checked { model: None, diagnostics },
+        Err(diagnostics) => Checked { model: None, diagnostics, warnings: Vec::new() },
     };
-    Ok(Loaded { sources, diagnostics, model, inputs: files.inputs })
+    Ok(Loaded { sources, diagnostics, warnings, model, inputs: files.inputs })
 }
 
 /// Settings that only give params.

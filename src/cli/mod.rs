@@ -6,15 +6,17 @@
 
 mod arguments;
 mod terminal;
+mod explain;
 mod input;
 mod progress;
 mod sinks;
 mod claims;
+mod warnings;
+mod sarif;
 mod refusal;
 mod run;
 mod check;
 mod show;
-mod explain;
 
 use std::ffi::OsString;
 use std::process::ExitCode;

@@ -1,7 +1,7 @@
 //! What is refused before anything is done: options that are not built yet, each by its name, and a run without end.
 
 use super::Refused;
-use super::arguments::{Algorithm, CheckArguments, Engine, EngineArguments, Format, Integrator};
+use super::arguments::{Algorithm, Engine, EngineArguments, Integrator};
 use crate::model::Model;
 use crate::model::ir::Action;
 
@@ -24,17 +24,6 @@ pub(super) fn refuse_engine(arguments: &EngineArguments) -> Result<(), Refused> 
         Integrator::Taylor => Err(not_built("--integrator taylor", "tsit5")),
         Integrator::Adams => Err(not_built("--integrator adams", "tsit5")),
         Integrator::Stiff => Err(not_built("--integrator stiff", "tsit5")),
-    }
-}
-
-/// Refuses what the checker cannot do yet.
-pub(super) fn refuse_check(arguments: &CheckArguments) -> Result<(), Refused> {
-    if arguments.deny.is_some() {
-        return Err("`--deny` is not built yet; warnings do not change the exit code".into());
-    }
-    match arguments.format {
-        Format::Text | Format::Json => Ok(()),
-        Format::Sarif => Err(not_built("--format sarif", "json")),
     }
 }
 

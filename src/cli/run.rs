@@ -10,6 +10,7 @@ use super::progress::ProgressLine;
 use super::refusal::{refuse_endless, refuse_engine};
 use super::sinks::{Sinks, prepare_folder};
 use super::terminal::{complain, say, say_aside, tell};
+use super::warnings::Levels;
 use super::{Exit, Refused, claims};
 use crate::base::{Diagnostic, SourceMap};
 use crate::calculus;
@@ -28,11 +29,12 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     refuse_engine(&arguments.engine)?;
     let limits = limits_of(&arguments.engine.limits)?;
+    let levels = Levels::new(&arguments.allow, &[])?;
     let begun = Instant::now();
     let loaded = load(&arguments.model, &settings_of(arguments))?;
     tell(&loaded.sources, &loaded.diagnostics);
     let exit = loaded.exit();
-    let Loaded { sources, model: Some(model), inputs, .. } = loaded else { return Ok(exit) };
+    let Loaded { sources, warnings, model: Some(model), inputs, .. } = loaded else { return Ok(exit) };
     refuse_endless(&model)?;
     let program = match compile(&model, arguments.engine.backend) {
         Ok(program) => program,
@@ -41,6 +43,9 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
             return Ok(Exit::ModelErrors);
         }
     };
+    if !arguments.quiet {
+        tell(&sources, &levels.settle(&sources, warnings));
+    }
     let compile_seconds = begun.elapsed().as_secs_f64();
 
     let cast = cast_of(&program);

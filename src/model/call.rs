@@ -93,7 +93,7 @@ impl<'a> Context<'a> {
             _ => {}
         }
         match self.globals.get(name.as_str()) {
-            Some(&Global { kind: GlobalKind::Definition(number), .. }) => match self.define(number) {
+            Some(&Global { kind: GlobalKind::Definition(number), .. }) => match self.mention(number) {
                 Meaning::Function(function) => self.lower_user_call(scope, function, args, span),
                 Meaning::Failed => self.wrong(span),
                 Meaning::Number(..) | Meaning::Text(_) | Meaning::Shared(_) | Meaning::Let(..) => {
@@ -233,7 +233,11 @@ impl<'a> Context<'a> {
             return self.wrong(span);
         }
         let Some(set) = self.agent_named(&item.set) else { return self.wrong(span) };
-        let binder = self.model.binders.push(Binder { name: item.binder.text.clone(), ty: set });
+        let binder = self.model.binders.push(Binder {
+            name: item.binder.text.clone(),
+            ty: set,
+            span: item.binder.span,
+        });
         scope.bound.push((&item.binder.text, binder));
         let filter = item.filter.as_ref().map(|filter| self.lower_condition(scope, filter));
         let body = match &item.body {

@@ -3,10 +3,10 @@
 //! Every expression that is pushed gets its [`Facts`] at once: operands stand before their users, so nothing is ever
 //! walked again to find out whether it is constant or changes continuously.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::evaluate::Evaluator;
-use super::ir::{BinderId, Expr, ExprId, ExprKind, FunctionId, InteractionId, ModeId, Model, TypeId};
+use super::ir::{BinderId, Expr, ExprId, ExprKind, FunctionId, InteractionId, ModeId, Model, TypeId, VarRef};
 use super::limits;
 use super::operands::for_each_operand;
 use super::types::{Slot, Ty};
@@ -75,6 +75,8 @@ pub(super) struct Definition<'a> {
     pub body: Body<'a>,
     /// How far it has come.
     pub progress: Progress,
+    /// Some other text mentions it.
+    pub used: bool,
 }
 
 impl Definition<'_> {
@@ -258,6 +260,8 @@ pub(super) struct Context<'a> {
     pub texts: Vec<String>,
     /// `-p NAME=VALUE`, and whether a parameter has taken it.
     pub overrides: Vec<(String, String)>,
+    /// Parameters and discrete variables whose values some block takes from a data file.
+    pub from_data: FxHashSet<(TypeId, VarRef)>,
     /// Something is imported, so what seems to be missing may be there.
     pub imports: bool,
     /// What has been found wrong.
@@ -282,6 +286,7 @@ impl<'a> Context<'a> {
             signatures: Vec::new(),
             texts: Vec::new(),
             overrides,
+            from_data: FxHashSet::default(),
             imports: false,
             diagnostics: Vec::new(),
             evaluator: Evaluator::new(limits::STEPS_MAX),
@@ -304,11 +309,11 @@ impl<'a> Context<'a> {
     }
 
     /// The outcome, its diagnostics in the order of the text.
-    pub fn finish(mut self) -> super::Checked {
+    pub fn finish(mut self, warnings: Vec<Diagnostic>) -> super::Checked {
         self.diagnostics.sort_by_key(|diagnostic| diagnostic.labels.first().map(|label| label.span));
         self.diagnostics.dedup();
         let model = if self.has_errors() { None } else { Some(self.model) };
-        super::Checked { model, diagnostics: self.diagnostics }
+        super::Checked { model, diagnostics: self.diagnostics, warnings }
     }
 
     /// A type in words.

@@ -65,7 +65,7 @@ impl<'a> Context<'a> {
 
     /// Adds a definition to be worked out later.
     pub fn add_definition(&mut self, name: &'a ast::Name, body: Body<'a>) -> usize {
-        self.definitions.push(Definition { name, body, progress: Progress::Waiting });
+        self.definitions.push(Definition { name, body, progress: Progress::Waiting, used: false });
         self.definitions.len() - 1
     }
 

@@ -44,6 +44,12 @@ impl<'a> Context<'a> {
         in_order_of_need(&needs)
     }
 
+    /// What a definition means, for a text that mentions it.
+    pub fn mention(&mut self, number: usize) -> Meaning {
+        self.definitions[number].used = true;
+        self.define(number)
+    }
+
     /// What a definition means; it is worked out when it is first asked for.
     pub fn define(&mut self, number: usize) -> Meaning {
         match self.definitions[number].progress {
@@ -141,7 +147,7 @@ impl<'a> Context<'a> {
         match &expr.kind {
             ast::ExprKind::Text(text) => Some(text.clone()),
             ast::ExprKind::Name(name) => match self.globals.get(name.as_str())?.kind {
-                super::context::GlobalKind::Definition(number) => match self.define(number) {
+                super::context::GlobalKind::Definition(number) => match self.mention(number) {
                     Meaning::Text(number) => Some(self.texts[number].clone()),
                     _ => None,
                 },

@@ -166,6 +166,8 @@ pub struct Binder {
     pub name: String,
     /// What it ranges over.
     pub ty: TypeId,
+    /// Where it is bound.
+    pub span: Span,
 }
 
 /// `fn name(params) = body`; the body refers to the parameters by `ExprKind::Local`.

@@ -39,6 +39,7 @@ mod record;
 mod run;
 mod formula;
 mod dump;
+mod lint;
 
 pub use dump::dump;
 pub use ir::Model;
@@ -77,6 +78,8 @@ pub struct Checked {
     pub model: Option<Model>,
     /// What there is to say, in the order of the text.
     pub diagnostics: Vec<Diagnostic>,
+    /// What a careful reader would ask about a model without errors (HY06xx), in the order of the text.
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// The model that a text describes, with the settings of this run. Data files that it names are added to `sources`.
@@ -91,5 +94,6 @@ pub fn check(ast: &Ast, sources: &mut SourceMap, files: &mut dyn Files, settings
     run::settle(&mut context, ast, settings);
     population::populate(&mut context, ast, files, &initials);
     run::trajectories(&mut context, ast, settings);
-    context.finish()
+    let warnings = lint::lint(&mut context);
+    context.finish(warnings)
 }

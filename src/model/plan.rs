@@ -1,7 +1,7 @@
 //! What is known of the agents of a block before they are made.
 
 use super::draw::Given;
-use super::ir::{ExprId, ModeId, TypeId};
+use super::ir::{ExprId, ModeId, TypeId, VarRef};
 use crate::base::Span;
 use crate::syntax::ast;
 
@@ -38,6 +38,17 @@ pub(super) struct Plan<'a> {
     pub columns: Vec<Vec<f64>>,
     /// What unknown arguments and columns were perhaps meant to be; these are not missing.
     pub misspelt: Vec<String>,
+}
+
+impl Plan<'_> {
+    /// The parameters and discrete variables that are columns of the data.
+    pub fn given_by_data(&self) -> impl Iterator<Item = (TypeId, VarRef)> {
+        let is_column = |source: &Source| matches!(source, Source::Column(_));
+        let given = move |(k, source): (usize, &Source)| is_column(source).then_some(k);
+        let params = self.params.iter().enumerate().filter_map(given).map(VarRef::Param);
+        let discretes = self.discretes.iter().enumerate().filter_map(given).map(VarRef::Discrete);
+        params.chain(discretes).map(|variable| (self.ty, variable))
+    }
 }
 
 /// An agent of `system`, depending on `index`.

@@ -47,6 +47,9 @@ pub(super) fn populate<'a>(
     for plan in &mut plans {
         context.plan_links(plan);
     }
+    for plan in &plans {
+        context.from_data.extend(plan.given_by_data());
+    }
     if !context.has_errors() {
         context.make(&plans, initials);
     }

@@ -114,7 +114,7 @@ impl<'a> Context<'a> {
 
     /// The value that a definition gives to the place where its name stands.
     fn lower_definition(&mut self, number: usize, name: &str, span: Span) -> Value {
-        match self.define(number) {
+        match self.mention(number) {
             Meaning::Number(value, ty) => self.number(value, ty, span),
             Meaning::Text(_) => self.number(0.0, Ty::Text, span),
             Meaning::Shared(value) => value,
@@ -209,7 +209,7 @@ impl<'a> Context<'a> {
                 let ty = if link.required { Ty::Agent(link.ty) } else { Ty::Link(link.ty) };
                 (ExprKind::Link(agent.id, number), ty)
             }
-            Member::Let(definition) => match self.define(definition) {
+            Member::Let(definition) => match self.mention(definition) {
                 Meaning::Let(number, ty) => (ExprKind::Let(agent.id, number), ty),
                 _ => return self.wrong(span),
             },

@@ -1,0 +1,76 @@
+//! What is worth a warning, a variant per kind, each with its own code, and how each is told.
+
+use crate::base::{Diagnostic, Span};
+
+/// A question to whoever wrote the model.
+pub(super) enum Warning {
+    /// Nothing mentions a name.
+    Unused { name: String, what: String, span: Span },
+    /// A discrete variable that nothing reads; whether anything writes it.
+    NeverRead { name: String, agent: String, span: Span, written: bool },
+    /// An agent type of which `system` makes no agent.
+    NoAgents { name: String, span: Span },
+    /// A mode in which no agent ever is.
+    Unreached { path: String, agent: String, span: Span },
+    /// A condition without which the transition cannot fire, and which is never true.
+    NeverTrue { label: String, span: Span, transition: Span },
+    /// A delay that never ends.
+    Endless { label: String, span: Span },
+    /// A name that is easily taken for a word of the language.
+    Lookalike { name: String, word: &'static str, span: Span, same_letters: bool },
+}
+
+impl From<Warning> for Diagnostic {
+    fn from(warning: Warning) -> Self {
+        match warning {
+            Warning::Unused { name, what, span } => {
+                Diagnostic::warning("HY0601", format!("`{name}` is never used"))
+                    .label(span, what)
+                    .help(format!("leave it out, or call it `_{name}` if that is how it should be"))
+            }
+            Warning::NeverRead { name, agent, span, written } => {
+                let label = if written {
+                    format!("`{agent}` writes it, but nothing reads or records it")
+                } else {
+                    format!("nothing of `{agent}` reads, writes or records it")
+                };
+                Diagnostic::warning("HY0602", format!("the discrete variable `{name}` is never read"))
+                    .label(span, label)
+                    .help(format!("leave it out, `record` it, or call it `_{name}`"))
+            }
+            Warning::NoAgents { name, span } => {
+                Diagnostic::warning("HY0603", format!("there are no agents of type `{name}`"))
+                    .label(span, "`system` makes none of these")
+                    .help(format!("make one in `system`, or call the type `_{name}`"))
+            }
+            Warning::Unreached { path, agent, span } => {
+                Diagnostic::warning("HY0604", format!("no `{agent}` is ever in mode `{path}`"))
+                    .label(span, "neither entered by a transition nor started in")
+                    .help(format!("add a transition `-> {path}`, or start an agent `in {path}`"))
+            }
+            Warning::NeverTrue { label, span, transition } => {
+                let diagnostic = Diagnostic::warning("HY0605", format!("`{label}` can never fire"))
+                    .label(span, "false with the parameters of this run");
+                let diagnostic =
+                    if transition == span { diagnostic } else { diagnostic.label(transition, "needs it") };
+                diagnostic.help("leave the transition out, or correct the condition")
+            }
+            Warning::Endless { label, span } => {
+                Diagnostic::warning("HY0605", format!("`{label}` can never fire"))
+                    .label(span, "this delay is infinite")
+                    .note("entering the mode would end the run (HY0510)")
+                    .help("leave the transition out, or give it a finite delay")
+            }
+            Warning::Lookalike { name, word, span, same_letters } => {
+                let label = if same_letters {
+                    format!("only its case tells it from the word `{word}` of the language")
+                } else {
+                    format!("one slip away from the word `{word}` of the language")
+                };
+                Diagnostic::warning("HY0612", format!("`{name}` is easily taken for `{word}`"))
+                    .label(span, label)
+                    .help("give it a name that nobody misreads")
+            }
+        }
+    }
+}
