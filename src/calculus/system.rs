@@ -10,7 +10,7 @@
 
 use crate::base::{Arena, Idx, Span};
 use crate::calculus::graph::{Graph, NodeId};
-pub use crate::model::ir::{Block, Instance, Population, Record, Run, VarRef};
+pub use crate::model::ir::{Block, Instance, Integrator, Population, Record, Run, VarRef};
 
 /// Names a [`Function`].
 pub type FunctionId = Idx<Function>;

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::model::ir::Integrator;
+
 /// A language, a compiler and a simulator for multi-agent hybrid systems
 #[derive(Debug, Parser)]
 #[command(name = "hyc", version, max_term_width = 100, propagate_version = true)]
@@ -77,9 +79,10 @@ pub(super) struct EngineArguments {
     /// The form of the engine: `plain` (the default, until `fast` is built)
     #[arg(long, value_enum, default_value_t)]
     pub(super) engine: Engine,
-    /// The method of integration
-    #[arg(long, value_enum, default_value_t)]
-    pub(super) integrator: Integrator,
+    /// The method of integration: `auto` (for now tsit5), `tsit5` (Runge-Kutta, orders 5 and 4), `adams`
+    /// (predictor-corrector, orders 3 and 4); not built yet: `taylor`, `stiff`
+    #[arg(long, value_name = "METHOD", value_parser = integrator)]
+    pub(super) integrator: Option<Integrator>,
     /// What evaluates the equations: machine code, or the interpreter (the same bits)
     #[arg(long, value_enum, default_value_t)]
     pub(super) backend: BackendName,
@@ -181,22 +184,6 @@ pub(super) enum Engine {
     Plain,
 }
 
-/// The method of integration.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(super) enum Integrator {
-    /// What suits the model; for now tsit5
-    #[default]
-    Auto,
-    /// Not built yet
-    Taylor,
-    /// Tsitouras' explicit Runge-Kutta pair of orders 5 and 4
-    Tsit5,
-    /// Not built yet
-    Adams,
-    /// Not built yet
-    Stiff,
-}
-
 /// What evaluates the equations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum BackendName {
@@ -242,6 +229,11 @@ pub(super) enum Stage {
     Tape,
     /// The input of the machine code generator
     Clif,
+}
+
+fn integrator(text: &str) -> Result<Integrator, String> {
+    let named = Integrator::NAMED.iter().find(|(name, _)| *name == text);
+    named.map(|(_, integrator)| *integrator).ok_or("write auto, tsit5 or adams".into())
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {

@@ -1,7 +1,7 @@
 //! What is refused before anything is done: options that are not built yet, each by its name, and a run without end.
 
 use super::Refused;
-use super::arguments::{Algorithm, Engine, EngineArguments, Integrator};
+use super::arguments::{Algorithm, Engine, EngineArguments};
 use crate::model::Model;
 use crate::model::ir::Action;
 
@@ -20,10 +20,10 @@ pub(super) fn refuse_engine(arguments: &EngineArguments) -> Result<(), Refused> 
         Engine::Fast => return Err(not_built("--engine fast", "plain")),
     }
     match arguments.integrator {
-        Integrator::Auto | Integrator::Tsit5 => Ok(()),
-        Integrator::Taylor => Err(not_built("--integrator taylor", "tsit5")),
-        Integrator::Adams => Err(not_built("--integrator adams", "tsit5")),
-        Integrator::Stiff => Err(not_built("--integrator stiff", "tsit5")),
+        Some(integrator) if !integrator.is_built() => {
+            Err(not_built(&format!("--integrator {}", integrator.name()), "tsit5"))
+        }
+        Some(_) | None => Ok(()),
     }
 }
 

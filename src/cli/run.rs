@@ -60,7 +60,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
         model: &name_of(&arguments.model),
         algorithm: "masim",
         engine: "plain",
-        integrator: "tsit5",
+        integrator: program.run.integrator.settled().name(),
         backend: backend_name(arguments.engine.backend),
         threads: 1,
         tolerance: program.run.tolerance,
@@ -95,7 +95,9 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
 /// What the command line lays over the model.
 fn settings_of(arguments: &RunArguments) -> Settings {
     let SettingArguments { params, until, tolerance, absolute, seed } = arguments.settings.clone();
-    Settings { params, until, tolerance, absolute, seed, record_all: arguments.outputs.record.is_some() }
+    let integrator = arguments.engine.integrator;
+    let record_all = arguments.outputs.record.is_some();
+    Settings { params, until, tolerance, absolute, seed, integrator, record_all }
 }
 
 /// The lower floors, one after the other.

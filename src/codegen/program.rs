@@ -3,8 +3,8 @@
 pub use crate::calculus::system::FunctionId;
 pub use crate::calculus::system::{
     ActionList, ActionStep, AgentSystem, Atom, ClaimKind, ClaimSystem, Column, Condition, Flow, Frame, Guard,
-    InteractionSystem, Kink, KinkKind, Layout, LetSystem, LetValue, ModeSystem, PairTransition, Population,
-    Quantified, Record, Relation, Run, Slot, Target, TransitionSystem, Trigger, VarRef,
+    Integrator, InteractionSystem, Kink, KinkKind, Layout, LetSystem, LetValue, ModeSystem, PairTransition,
+    Population, Quantified, Record, Relation, Run, Slot, Target, TransitionSystem, Trigger, VarRef,
 };
 use crate::codegen::kernel::{Kernel, StepKernel};
 

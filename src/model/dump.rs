@@ -6,8 +6,8 @@ use std::fmt::Write;
 
 use super::formula::{Formulas, Names, number_text};
 use super::ir::{
-    Action, AgentType, Claim, Instance, Interaction, Mode, ModeId, Model, ParamValue, Population, Record,
-    Run, Transition, Trigger, Type, VarRef, Variable,
+    Action, AgentType, Claim, Instance, Integrator, Interaction, Mode, ModeId, Model, ParamValue, Population,
+    Record, Run, Transition, Trigger, Type, VarRef, Variable,
 };
 
 /// How many agents of a block are written.
@@ -265,7 +265,11 @@ impl<'m> Writer<'m> {
             number_text(run.tolerance),
             run.seed
         );
-        self.line(0, &line);
+        let integrator = match run.integrator {
+            Integrator::Auto => String::new(),
+            other => format!(" integrator {}", other.name()),
+        };
+        self.line(0, &(line + &integrator));
         for record in &run.records {
             self.record(record);
         }

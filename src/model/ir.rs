@@ -5,6 +5,7 @@
 
 use crate::base::{Arena, Idx, Span};
 use crate::math::Op;
+pub use crate::model::integrator::Integrator;
 
 /// Names an [`Expr`].
 pub type ExprId = Idx<Expr>;
@@ -475,6 +476,8 @@ pub struct Run {
     pub absolute: Option<f64>,
     /// Seed of all randomness.
     pub seed: u64,
+    /// The method of integration.
+    pub integrator: Integrator,
     /// Trajectories to write.
     pub records: Vec<Record>,
     /// The file of the event log.
@@ -490,6 +493,7 @@ impl Default for Run {
             tolerance: 1e-6,
             absolute: None,
             seed: 0,
+            integrator: Integrator::Auto,
             records: Vec::new(),
             events: None,
             span: None,

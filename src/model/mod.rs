@@ -5,6 +5,7 @@
 //! every expression typed, every constant evaluated, every state has one flow in every mode, no flow reads an agent that may
 //! not be there. Many errors are reported in one run, none of them twice.
 
+mod integrator;
 pub mod ir;
 pub mod limits;
 mod suggest;
@@ -60,6 +61,8 @@ pub struct Settings {
     pub absolute: Option<f64>,
     /// `--seed`.
     pub seed: Option<u64>,
+    /// `--integrator`.
+    pub integrator: Option<ir::Integrator>,
     /// `--record`: if `run` names no trajectories, record all states and discrete variables of all agents, to a file that the
     /// command line knows.
     pub record_all: bool,

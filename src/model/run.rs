@@ -5,17 +5,16 @@ use rustc_hash::FxHashMap;
 use super::Settings;
 use super::context::{Context, Home, Scope};
 use super::error::{FileError, RunError};
-use super::ir::Record;
+use super::ir::{Integrator, Record};
 use super::suggest::closest;
 use super::types::{Slot, Ty};
 use crate::base::Span;
-use crate::syntax::ast::{self, Item, RunSettingKind};
+use crate::syntax::ast::{self, ExprKind, Item, RunSettingKind};
 
 /// Settings of the language whose meaning comes later.
 const LATER: &[&str] = &[
     "algorithm",
     "engine",
-    "integrator",
     "backend",
     "threads",
     "event_tolerance",
@@ -104,7 +103,10 @@ impl<'a> Context<'a> {
             RunSettingKind::Output { name, .. } => self.unknown_setting(name),
             RunSettingKind::Set { name, value } => {
                 self.only_once(&name.text, item.span, set);
-                self.set_number(name, value);
+                match name.text.as_str() {
+                    "integrator" => self.set_integrator(value),
+                    _ => self.set_number(name, value),
+                }
             }
         }
     }
@@ -139,8 +141,34 @@ impl<'a> Context<'a> {
         }
     }
 
+    fn set_integrator(&mut self, value: &ast::Expr) {
+        let named = match &value.kind {
+            ExprKind::Name(name) => Integrator::NAMED.iter().find(|(known, _)| known == name),
+            _ => None,
+        };
+        match named {
+            Some((_, integrator)) => self.use_integrator(*integrator, value.span),
+            None => {
+                let found = match &value.kind {
+                    ExprKind::Name(name) => format!("`{name}`"),
+                    _ => "an expression".into(),
+                };
+                let (name, needs) = ("integrator".to_string(), "auto, tsit5 or adams");
+                self.report(RunError::OutOfRange { name, needs, found, span: value.span });
+            }
+        }
+    }
+
+    fn use_integrator(&mut self, integrator: Integrator, span: Span) {
+        if integrator.is_built() {
+            self.model.run.integrator = integrator;
+        } else {
+            self.refuse(format!("the integrator `{}`", integrator.name()), span);
+        }
+    }
+
     fn unknown_setting(&mut self, name: &ast::Name) {
-        let known = ["until", "tolerance", "absolute", "seed", "record", "events"];
+        let known = ["until", "tolerance", "absolute", "seed", "integrator", "record", "events"];
         let similar = closest(&name.text, known.into_iter().chain(LATER.iter().copied()));
         self.report(RunError::Unknown { name: name.text.clone(), span: name.span, similar });
     }
@@ -159,7 +187,7 @@ impl<'a> Context<'a> {
         self.report(RunError::OutOfRange {
             name: setting.name.to_string(),
             needs: setting.needs,
-            value,
+            found: value.to_string(),
             span,
         });
         None
@@ -177,6 +205,9 @@ impl<'a> Context<'a> {
         }
         if let Some(seed) = settings.seed {
             self.model.run.seed = seed;
+        }
+        if let Some(integrator) = settings.integrator {
+            self.use_integrator(integrator, Span::default());
         }
     }
 

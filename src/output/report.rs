@@ -11,7 +11,7 @@ pub struct Report<'a> {
     pub algorithm: &'a str,
     /// `plain`.
     pub engine: &'a str,
-    /// `tsit5`.
+    /// `tsit5`, `adams`.
     pub integrator: &'a str,
     /// `jit`, `interp`.
     pub backend: &'a str,

@@ -26,6 +26,7 @@ pub fn statistics(report: &Report<'_>) -> String {
         "events": stats.events,
         "steps": stats.steps,
         "rejected": stats.rejected,
+        "starts": stats.starts,
         "rhs_evaluations": stats.rhs_evaluations,
         "guard_evaluations": stats.guard_evaluations,
         "guard_ranges": stats.guard_ranges,

@@ -319,7 +319,7 @@ impl Engine<'_, '_> {
         let time = self.present.time;
         let mut steps: FxHashMap<usize, Option<f64>> = FxHashMap::default();
         for &agent in &members {
-            steps.insert(agent, self.groups.groups[self.agents.agents[agent].group].h);
+            steps.insert(agent, self.groups.groups[self.agents.agents[agent].group].integration.h);
         }
         for &group in &concerned {
             self.groups.dissolve(group);

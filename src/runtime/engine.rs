@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use crate::base::{Diagnostic, Span};
-use crate::codegen::program::Program;
+use crate::codegen::program::{Integrator, Program};
 use crate::math::Interval;
 use crate::runtime::advance::Stepper;
 use crate::runtime::detect::CurveRows;
@@ -18,6 +18,7 @@ use crate::runtime::population::Agents;
 use crate::runtime::present::{Depth, Present};
 use crate::runtime::record::Recorder;
 use crate::runtime::repetition::Repetitions;
+use crate::runtime::solve::MethodName;
 use crate::runtime::solve::control::Accuracy;
 
 /// A time at which something named by a number is due; void if the version is not that of the thing any more.
@@ -140,7 +141,7 @@ impl<'p, 'o> Engine<'p, 'o> {
         Ok(Self {
             program,
             present: Present::new(&agents),
-            stepper: Stepper::new(&agents, accuracy, time_end, limits),
+            stepper: Stepper::new(&agents, method(run.integrator), accuracy, time_end, limits),
             curves: CurveRows::new(&agents),
             enclosures: Enclosures::new(&agents, accuracy),
             recorder: Recorder::new(program, time_end),
@@ -226,6 +227,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             events: self.n_events,
             steps: counts.steps,
             rejected: counts.rejected,
+            starts: counts.starts,
             rhs_evaluations: counts.rhs_evaluations + self.present.rhs_evaluations,
             guard_evaluations: self.curves.evaluations,
             guard_ranges: self.curves.ranges + self.enclosures.ranges,
@@ -275,6 +277,17 @@ impl<'p, 'o> Engine<'p, 'o> {
             Origin::Transition(transition) => (&transition.label, transition.span),
             Origin::Pair(pair) => (&pair.transition.label, pair.transition.span),
             Origin::Claim(claim) => (claim.message.as_deref().unwrap_or("invariant"), claim.span),
+        }
+    }
+}
+
+/// The method that a setting stands for.
+fn method(integrator: Integrator) -> MethodName {
+    match integrator.settled() {
+        Integrator::Adams => MethodName::Adams,
+        Integrator::Tsit5 => MethodName::Tsit5,
+        Integrator::Auto | Integrator::Taylor | Integrator::Stiff => {
+            unreachable!("the model has been refused, or the setting settled")
         }
     }
 }

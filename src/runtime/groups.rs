@@ -4,7 +4,7 @@
 //! is a group of its own.
 
 use crate::runtime::population::{ABSENT, Agents};
-use crate::runtime::solve::control::Control;
+use crate::runtime::solve::integrate::Integration;
 
 /// Agents on one clock.
 #[derive(Clone, Debug, Default)]
@@ -13,12 +13,8 @@ pub struct Group {
     pub members: Vec<usize>,
     /// End of the last step or time of the last event, s; infinite for members without states.
     pub clock: f64,
-    /// The step to try next, s; none: to be estimated.
-    pub h: Option<f64>,
-    /// Memory of the step-size control.
-    pub control: Control,
-    /// f at the clock, all members one after the other; empty where it has to be computed.
-    pub first_rates: Vec<f64>,
+    /// What the integration of all members, one after the other, remembers.
+    pub integration: Integration,
     /// Kinks that the last step ends at: agent, kink of its flow, change of its lock.
     pub kinks: Vec<KinkHit>,
     /// Changes whenever something that was derived from the group's future becomes void.
@@ -68,7 +64,7 @@ impl Groups {
             self.groups[number] = Group {
                 members: component,
                 clock: if has_states { clock } else { f64::INFINITY },
-                h: step,
+                integration: Integration::new(step),
                 version,
                 ..Group::default()
             };

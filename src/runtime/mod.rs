@@ -42,6 +42,7 @@ mod truth;
 mod detect;
 mod enclose;
 mod failure;
+mod flow;
 mod advance;
 mod stiffness;
 mod repetition;

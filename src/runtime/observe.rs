@@ -152,6 +152,8 @@ pub struct Stats {
     pub steps: u64,
     /// Rejected steps.
     pub rejected: u64,
+    /// Beginnings of an integration, at t = 0 and after each restart (a coupled group counts once for each member).
+    pub starts: u64,
     /// Evaluations of right-hand sides, one an agent.
     pub rhs_evaluations: u64,
     /// Evaluations of guard expressions at a point.

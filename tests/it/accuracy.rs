@@ -3,7 +3,7 @@
 use crate::harness::{Run, simulate};
 
 /// Steps and error of a run at each tolerance.
-fn sweep(run: impl Fn(f64) -> Run, error: impl Fn(&Run) -> f64) -> Vec<(f64, f64)> {
+pub fn sweep(run: impl Fn(f64) -> Run, error: impl Fn(&Run) -> f64) -> Vec<(f64, f64)> {
     let tolerances = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
     tolerances
         .map(|tolerance| {
@@ -14,7 +14,7 @@ fn sweep(run: impl Fn(f64) -> Run, error: impl Fn(&Run) -> f64) -> Vec<(f64, f64
 }
 
 /// Slope of the line of least squares through (log steps, log error).
-fn slope(points: &[(f64, f64)]) -> f64 {
+pub fn slope(points: &[(f64, f64)]) -> f64 {
     let logs: Vec<(f64, f64)> = points.iter().map(|(steps, error)| (steps.ln(), error.ln())).collect();
     let n = logs.len() as f64;
     let (mx, my) = (logs.iter().map(|p| p.0).sum::<f64>() / n, logs.iter().map(|p| p.1).sum::<f64>() / n);

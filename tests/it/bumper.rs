@@ -1,6 +1,8 @@
 //! Does the bumper arena agree with its references? See `tests/data`: event logs and states at T = 20, computed at
 //! order 20 and tolerance 2e-16. The cars are chaotic: every event has to be right for the last one to be.
 
+use hyc::model::ir::Integrator;
+
 use crate::harness::{Case, Run};
 
 /// An event of the reference: time, transition, cars.
@@ -34,13 +36,20 @@ fn events(n: usize) -> Vec<Reference> {
     rows(&format!("ref_{n}.csv")).into_iter().map(event).collect()
 }
 
-fn run(n: usize, tolerance: f64) -> Run {
+fn case(n: usize, tolerance: f64) -> Case {
     let case = Case::shipped("bumper.hy").param("N", n).param("data", format!("bumper_{n}.csv"));
-    case.tolerance(tolerance).run()
+    case.tolerance(tolerance)
 }
 
 fn agrees(n: usize, tolerance: f64, time_error: f64, state_error: f64) {
-    let run = run(n, tolerance);
+    compare(n, &case(n, tolerance).run(), time_error, state_error);
+}
+
+fn agrees_with_adams(n: usize, tolerance: f64, time_error: f64, state_error: f64) {
+    compare(n, &case(n, tolerance).integrator(Integrator::Adams).run(), time_error, state_error);
+}
+
+fn compare(n: usize, run: &Run, time_error: f64, state_error: f64) {
     let reference = events(n);
     assert_eq!(run.events.len(), reference.len(), "{:#?}", run.log());
     for (event, expected) in run.events.iter().zip(&reference) {
@@ -110,7 +119,57 @@ fn tight_50() {
 }
 
 #[test]
+fn adams_loose_2() {
+    agrees_with_adams(2, 1e-6, 1e-3, 1e-2);
+}
+
+#[test]
+fn adams_loose_5() {
+    agrees_with_adams(5, 1e-6, 1e-3, 1e-2);
+}
+
+#[test]
+fn adams_loose_10() {
+    agrees_with_adams(10, 1e-6, 1e-3, 1e-2);
+}
+
+#[test]
+fn adams_loose_20() {
+    agrees_with_adams(20, 1e-6, 1e-3, 1e-2);
+}
+
+#[test]
+fn adams_loose_50() {
+    agrees_with_adams(50, 1e-6, 1e-3, 1e-2);
+}
+
+#[test]
+fn adams_tight_2() {
+    agrees_with_adams(2, 1e-10, 1e-7, 1e-5);
+}
+
+#[test]
+fn adams_tight_5() {
+    agrees_with_adams(5, 1e-10, 1e-7, 1e-5);
+}
+
+#[test]
+fn adams_tight_10() {
+    agrees_with_adams(10, 1e-10, 1e-7, 1e-5);
+}
+
+#[test]
+fn adams_tight_20() {
+    agrees_with_adams(20, 1e-10, 1e-7, 1e-5);
+}
+
+#[test]
+fn adams_tight_50() {
+    agrees_with_adams(50, 1e-10, 1e-7, 1e-5);
+}
+
+#[test]
 fn who_is_not_in_an_event_is_not_cut() {
-    let run = run(20, 1e-6);
+    let run = case(20, 1e-6).run();
     assert!(run.stats.cuts <= 2 * run.stats.events, "an event cuts those whom it writes: {:?}", run.stats);
 }

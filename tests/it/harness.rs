@@ -8,7 +8,7 @@ use hyc::base::{Diagnostic, SourceMap};
 use hyc::calculus::system::System;
 use hyc::codegen::Backend;
 use hyc::codegen::program::Program;
-use hyc::model::ir::Model;
+use hyc::model::ir::{Integrator, Model};
 use hyc::model::{Files, Settings};
 use hyc::runtime::limits::Limits;
 use hyc::runtime::observe::{Cell, End, FalseAssert, Last, Observer, Outcome, Progress, Row, Stats};
@@ -177,6 +177,12 @@ impl Case {
     /// `--seed`
     pub fn seed(mut self, seed: u64) -> Self {
         self.settings.seed = Some(seed);
+        self
+    }
+
+    /// `--integrator`
+    pub fn integrator(mut self, integrator: Integrator) -> Self {
+        self.settings.integrator = Some(integrator);
         self
     }
 

@@ -26,5 +26,6 @@ mod poles;
 mod closed_forms;
 mod bumper;
 mod accuracy;
+mod adams;
 mod differential;
 mod draws;

@@ -247,7 +247,7 @@ pub(in crate::model) enum RunError {
     /// No such setting.
     Unknown { name: String, span: Span, similar: Option<String> },
     /// A value that the setting cannot take.
-    OutOfRange { name: String, needs: &'static str, value: f64, span: Span },
+    OutOfRange { name: String, needs: &'static str, found: String, span: Span },
     /// Set twice.
     Twice { name: String, span: Span, first: Span },
     /// Something that has nothing to record.
@@ -262,9 +262,9 @@ impl From<RunError> for Diagnostic {
                     .label(span, "not known"),
                 &similar,
             ),
-            RunError::OutOfRange { name, needs, value, span } => {
+            RunError::OutOfRange { name, needs, found, span } => {
                 Diagnostic::error("HY0281", format!("`{name}` must be {needs}"))
-                    .label(span, format!("this is {value}"))
+                    .label(span, format!("this is {found}"))
             }
             RunError::Twice { name, span, first } => {
                 Diagnostic::error("HY0282", format!("`{name}` is set twice"))

@@ -45,19 +45,43 @@ impl Default for Control {
 
 const SAFETY: f64 = 0.9;
 const SHRINK: f64 = 0.2;
-const GROW: f64 = 6.0;
+
+/// How the next step may be chosen; `order` is the power of the step with which the estimated error falls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pace {
+    /// As the errors say, but at most `grow` times as long.
+    Free {
+        /// See above.
+        order: f64,
+        /// At least 1.
+        grow: f64,
+    },
+    /// As long as it was: the steps that start a method of several steps lie evenly, and their errors are not its own.
+    Hold {
+        /// See above.
+        order: f64,
+    },
+}
+
+impl Default for Pace {
+    fn default() -> Self {
+        Pace::Hold { order: 1.0 }
+    }
+}
 
 impl Control {
     /// The factor for the next step after an accepted one with this error norm.
-    pub fn accepted(&mut self, norm: f64, order: f64) -> f64 {
+    pub fn accepted(&mut self, norm: f64, pace: Pace) -> f64 {
+        let Pace::Free { order, grow } = pace else { return 1.0 };
         let norm = norm.max(1e-10);
         let factor = SAFETY * pow(norm, -0.7 / order) * pow(self.last, 0.4 / order);
         self.last = norm.max(1e-4);
-        factor.clamp(SHRINK, GROW)
+        factor.clamp(SHRINK, grow)
     }
 
     /// The factor for another try after a rejected step; a quarter where the error is no number.
-    pub fn rejected(&self, norm: f64, order: f64) -> f64 {
+    pub fn rejected(&self, norm: f64, pace: Pace) -> f64 {
+        let (Pace::Free { order, .. } | Pace::Hold { order }) = pace;
         if norm.is_finite() { (SAFETY * pow(norm, -1.0 / order)).clamp(SHRINK, 0.9) } else { 0.25 }
     }
 }

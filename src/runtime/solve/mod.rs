@@ -4,9 +4,33 @@
 //! `s`, `e` the ends of a stretch of time.
 
 pub mod segment;
-pub mod tsit5;
 pub mod control;
+pub mod method;
+pub mod tsit5;
+pub mod adams;
+pub mod integrate;
 pub mod roots;
+
+use adams::Adams;
+use method::Method;
+use tsit5::Tsit5;
+
+/// A method's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MethodName {
+    /// [`Tsit5`].
+    Tsit5,
+    /// [`Adams`].
+    Adams,
+}
+
+/// The method of this name.
+pub fn method(name: MethodName) -> Box<dyn Method> {
+    match name {
+        MethodName::Tsit5 => Box::<Tsit5>::default(),
+        MethodName::Adams => Box::<Adams>::default(),
+    }
+}
 
 /// The width to which the time of a root is known at least: max(1e-12, 4 ulp of t), s.
 pub fn time_resolution(t: f64) -> f64 {

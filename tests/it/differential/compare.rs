@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use hyc::base::{Diagnostic, SourceMap};
 use hyc::codegen::Backend;
-use hyc::model::ir::Model;
+use hyc::model::ir::{Integrator, Model};
 use hyc::model::{Files, Settings};
 use hyc::runtime::limits::Limits;
 use hyc::runtime::observe::{Cell, End, Event, Last, Observer, Progress};
@@ -42,9 +42,9 @@ struct Story {
     error: Option<String>,
 }
 
-/// Runs a model both ways.
-pub fn compare(text: &str) -> Verdict {
-    let model = match checked(text) {
+/// Runs a model both ways, the engine by this method.
+pub fn compare(text: &str, integrator: Integrator) -> Verdict {
+    let model = match checked(text, integrator) {
         Ok(model) => model,
         Err(found) => return Verdict::Different(format!("the model is refused:\n{text}\n{found}")),
     };
@@ -132,7 +132,7 @@ fn difference(ours: &Story, theirs: &Story, tolerance: f64) -> Option<String> {
 }
 
 /// The model of a text.
-fn checked(text: &str) -> Result<Model, String> {
+fn checked(text: &str, integrator: Integrator) -> Result<Model, String> {
     let mut sources = SourceMap::default();
     let file = sources.add("generated.hy", text);
     let say = |found: Vec<Diagnostic>| {
@@ -142,7 +142,8 @@ fn checked(text: &str) -> Result<Model, String> {
             .collect::<String>()
     };
     let ast = hyc::syntax::parse(file, text).map_err(say)?;
-    let checked = hyc::model::check(&ast, &mut sources, &mut NoFiles, &Settings::default());
+    let settings = Settings { integrator: Some(integrator), ..Settings::default() };
+    let checked = hyc::model::check(&ast, &mut sources, &mut NoFiles, &settings);
     checked.model.ok_or_else(|| say(checked.diagnostics))
 }
 

@@ -18,4 +18,4 @@ agent Car(v: real) {
 interaction Three(a: Car, b: Car, c: Car) { when a.x > b.x { a.x := 0 } }
 interaction Late(a: Car, b: Car) { after 1 { a.x := 0 } every 1 { b.x := 0 } }
 system { cars = Car[2](v ~ Normal(0, 1)) }
-run { stop when time > 3 integrator 3 }
+run { stop when time > 3 algorithm 3 }

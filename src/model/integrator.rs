@@ -1,0 +1,47 @@
+//! The methods of integration, by the names that users give them.
+
+/// A method of integration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Integrator {
+    /// What suits the model; for now [`Integrator::Tsit5`].
+    #[default]
+    Auto,
+    /// Taylor series; not built yet.
+    Taylor,
+    /// Tsitouras' explicit Runge-Kutta pair of orders 5 and 4.
+    Tsit5,
+    /// Adams' predictor-corrector of orders 3 and 4, as in Esposito & Kumar (2004).
+    Adams,
+    /// An implicit method for stiff flows; not built yet.
+    Stiff,
+}
+
+impl Integrator {
+    /// All, by the names that users give them.
+    pub const NAMED: [(&'static str, Integrator); 5] = [
+        ("auto", Integrator::Auto),
+        ("taylor", Integrator::Taylor),
+        ("tsit5", Integrator::Tsit5),
+        ("adams", Integrator::Adams),
+        ("stiff", Integrator::Stiff),
+    ];
+
+    /// Whether it is built.
+    pub fn is_built(self) -> bool {
+        match self {
+            Integrator::Auto | Integrator::Tsit5 | Integrator::Adams => true,
+            Integrator::Taylor | Integrator::Stiff => false,
+        }
+    }
+
+    /// What `auto` stands for.
+    pub fn settled(self) -> Integrator {
+        if self == Integrator::Auto { Integrator::Tsit5 } else { self }
+    }
+
+    /// The name that users give it.
+    pub fn name(self) -> &'static str {
+        let named = Self::NAMED.iter().find(|(_, integrator)| *integrator == self);
+        named.expect("every method has a name").0
+    }
+}

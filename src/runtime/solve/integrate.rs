@@ -1,0 +1,199 @@
+//! One step of an integration: tries by a method until the error is small enough.
+//!
+//! In: where the integration is, what is known of its past, the accuracy. Out: the stretch of the accepted step, with the
+//! new states in the trial; or why there is none.
+
+use std::collections::VecDeque;
+
+use crate::math::elementary::pow;
+use crate::runtime::solve::control::{Accuracy, Control};
+use crate::runtime::solve::method::{Flow, Method, Past, Start, Stretch, Trial};
+use crate::runtime::solve::segment::Segment;
+use crate::runtime::solve::ulp;
+
+/// What one integration remembers from step to step.
+#[derive(Clone, Debug, Default)]
+pub struct Integration {
+    /// The step to try next, s; none: to be estimated.
+    pub h: Option<f64>,
+    /// Memory of the step-size control.
+    control: Control,
+    /// Rates at the clock and before it.
+    past: Past,
+    /// The last tries, oldest first; for messages.
+    pub attempts: VecDeque<Attempt>,
+}
+
+/// A step that was tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attempt {
+    /// Where it begins, s.
+    pub t: f64,
+    /// Its length, s.
+    pub h: f64,
+    /// Its error in units of what is allowed; NaN if it met a number that is not finite.
+    pub ratio: f64,
+    /// Whether it was accepted.
+    pub accepted: bool,
+}
+
+/// How many tries are remembered.
+const ATTEMPTS: usize = 5;
+
+impl Integration {
+    /// An integration that begins with this step; none: to be estimated.
+    pub fn new(h: Option<f64>) -> Self {
+        Self { h, ..Self::default() }
+    }
+
+    /// Forgets the past: the next step begins afresh.
+    pub fn restart(&mut self) {
+        self.past.clear();
+    }
+
+    /// Whether the next step begins afresh.
+    pub fn is_fresh(&self) -> bool {
+        self.past.is_empty()
+    }
+
+    fn note(&mut self, attempt: Attempt) {
+        if self.attempts.len() == ATTEMPTS {
+            self.attempts.pop_front();
+        }
+        self.attempts.push_back(attempt);
+    }
+}
+
+/// Why no step is possible.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stuck {
+    /// The rates are not finite, here or however near after.
+    NonFinite,
+    /// The step needed for the accuracy is below the resolution of time.
+    Underflow,
+}
+
+/// Takes steps by one method; owns its scratch space.
+pub struct Integrator {
+    method: Box<dyn Method>,
+    accuracy: Accuracy,
+    time_end: f64,
+    /// The last try; its states are the new ones when a step has been accepted.
+    pub trial: Trial,
+    /// Tries that were rejected.
+    pub rejected: u64,
+}
+
+impl Integrator {
+    /// An integrator up to `time_end`, s.
+    pub fn new(method: Box<dyn Method>, accuracy: Accuracy, time_end: f64) -> Self {
+        Self { method, accuracy, time_end, trial: Trial::default(), rejected: 0 }
+    }
+
+    /// Tries steps from `(t, x)` until one is good enough.
+    pub fn step(
+        &mut self,
+        t: f64,
+        x: &[f64],
+        integration: &mut Integration,
+        flow: &mut dyn Flow,
+    ) -> Result<Stretch, Stuck> {
+        self.trial.resize(x.len());
+        if integration.past.is_empty() {
+            self.begin(t, x, integration, flow)?;
+        }
+        let mut h = match integration.h {
+            Some(h) => h,
+            None => self.first_step(t, x, integration, flow),
+        };
+        loop {
+            let left = self.time_end - t;
+            let (step, end) = if h >= left * (1.0 - 1e-12) { (left, self.time_end) } else { (h, t + h) };
+            let too_short = end <= t + 2.0 * ulp(t);
+            if too_short && end < self.time_end {
+                return Err(if self.is_finite() { Stuck::Underflow } else { Stuck::NonFinite });
+            }
+            self.method.step(&Start { t, h: step, x, past: &integration.past }, flow, &mut self.trial);
+            let stretch = Stretch { t, h: step, end };
+            if too_short {
+                // Not a step, but the end: what is left of the run cannot be told from none.
+                self.trial.x_new.copy_from_slice(x);
+                return Ok(stretch);
+            }
+            let Trial { error, x_new, rates, pace } = &self.trial;
+            let defined = rates.iter().all(|rate| rate.is_finite());
+            let ratio = if defined { self.accuracy.error_norm(error, x, x_new) } else { f64::NAN };
+            let accepted = ratio <= 1.0;
+            integration.note(Attempt { t, h: step, ratio, accepted });
+            if accepted {
+                let next = step * integration.control.accepted(ratio, *pace);
+                integration.h = Some(if step < h { next.max(h) } else { next }.min(1e100));
+                return Ok(stretch);
+            }
+            self.rejected += 1;
+            h = step * integration.control.rejected(ratio, *pace);
+        }
+    }
+
+    /// Writes the dense output of the accepted step for the states `x` at its begin, equations from `first` on.
+    pub fn dense(&self, stretch: &Stretch, x: &[f64], first: usize, segment: &mut Segment) {
+        self.method.dense(stretch, x, first, segment);
+    }
+
+    /// Goes on from the end of the accepted step, for which dense output has been written.
+    pub fn keep(&mut self, stretch: &Stretch, integration: &mut Integration) {
+        integration.past.push(stretch.end, &self.trial.rates, self.method.depth());
+    }
+
+    /// Whether all numbers of the last try are finite.
+    fn is_finite(&self) -> bool {
+        let Trial { x_new, error, rates, .. } = &self.trial;
+        x_new.iter().chain(error).chain(rates).all(|value| value.is_finite())
+    }
+
+    /// The rates at the clock.
+    fn begin(
+        &mut self,
+        t: f64,
+        x: &[f64],
+        integration: &mut Integration,
+        flow: &mut dyn Flow,
+    ) -> Result<(), Stuck> {
+        let Trial { x_new, error, rates, .. } = &mut self.trial;
+        x_new.copy_from_slice(x);
+        error.fill(0.0);
+        flow.rates(t, x, rates);
+        if !rates.iter().all(|rate| rate.is_finite()) {
+            return Err(Stuck::NonFinite);
+        }
+        integration.past.push(t, rates, self.method.depth());
+        Ok(())
+    }
+
+    /// The first step: Hairer, Norsett & Wanner, Solving ODEs I, II.4, with the second rates by one Euler step.
+    fn first_step(&self, t: f64, x: &[f64], integration: &Integration, flow: &mut dyn Flow) -> f64 {
+        let n = x.len();
+        let norm = |v: &[f64]| {
+            (0..n).fold(0.0_f64, |norm, i| {
+                norm.max(v[i].abs() / (self.accuracy.absolute + self.accuracy.tolerance * x[i].abs()))
+            })
+        };
+        let first_rates = integration.past.rates(0);
+        let (d0, d1) = (norm(x), norm(first_rates));
+        let h0 = if d0 < 1e-5 || d1 < 1e-5 { 1e-6 } else { 0.01 * d0 / d1 };
+        let h0 = h0.min(self.time_end - t);
+        let moved: Vec<f64> = (0..n).map(|i| x[i] + h0 * first_rates[i]).collect();
+        let mut rates = vec![0.0; n];
+        flow.rates(t + h0, &moved, &mut rates);
+        let difference: Vec<f64> = (0..n).map(|i| rates[i] - first_rates[i]).collect();
+        let d2 = norm(&difference) / h0;
+        let largest = d1.max(d2);
+        let h1 = if largest <= 1e-15 {
+            (h0 * 1e-3).max(1e-6)
+        } else {
+            pow(0.01 / largest, 1.0 / self.method.order())
+        };
+        let h = h1.min(100.0 * h0);
+        if h.is_finite() && h > 0.0 { h } else { h0.max(1e-12) }
+    }
+}
