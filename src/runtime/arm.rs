@@ -156,6 +156,9 @@ impl<'p> Engine<'p, '_> {
     /// Has an atom certified from `time` on; what was found beyond is void.
     pub fn recertify(&mut self, index: usize, time: f64) {
         let state = &mut self.guards.atoms[index];
+        if state.left_out {
+            return;
+        }
         state.certified = time;
         state.flip = f64::INFINITY;
         state.settled = false;

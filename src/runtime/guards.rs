@@ -4,6 +4,8 @@
 //! comparison of an instance with, below quantifiers, one binding. Atom instances lie in one list: those of an instance
 //! together, and of each atom in the order of the agents its quantifiers bind.
 
+use smallvec::SmallVec;
+
 use crate::codegen::program::{
     Atom, ClaimSystem, Condition, Frame, Guard, Layout, PairTransition, Quantified, Relation,
     TransitionSystem, Trigger,
@@ -62,8 +64,19 @@ pub struct Definition<'p> {
 pub struct AtomShape {
     /// The first, counted from the instance's first.
     pub first: usize,
-    /// Slot and type of each quantifier around it, outermost first.
-    pub binders: Vec<(usize, usize)>,
+    /// The quantifiers around it, outermost first.
+    pub binders: Vec<Binder>,
+}
+
+/// What binds an agent above an atom.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Binder {
+    /// The slot that it fills.
+    pub slot: usize,
+    /// The type over which it ranges.
+    pub ty: usize,
+    /// Whether it leaves out the instance's own agents.
+    pub other: bool,
 }
 
 /// An instance of a definition.
@@ -102,6 +115,8 @@ pub struct AtomState {
     pub truth: bool,
     /// Changes its truth at this instant and is closed or a crossing, so that it is true in it.
     pub touched: bool,
+    /// Whether `other` leaves out what it binds: nobody reads its truth.
+    pub left_out: bool,
     /// Whether its truth was given by a root at `certified`: it counts as found in that instant (rule 4).
     pub rooted: bool,
     /// Up to here its truth does not change, s.
@@ -174,6 +189,9 @@ impl<'p> Guards<'p> {
             for_each_binding(agents, definition, &mut |roots| guards.add(number, definition, roots));
         }
         guards.definitions = definitions;
+        for index in 0..guards.atoms.len() {
+            guards.atoms[index].left_out = guards.leaves_out(agents, index);
+        }
         Ok(guards)
     }
 
@@ -196,6 +214,7 @@ impl<'p> Guards<'p> {
             instance,
             truth: false,
             touched: false,
+            left_out: false,
             rooted: false,
             certified: 0.0,
             flip: f64::INFINITY,
@@ -235,7 +254,7 @@ impl<'p> Guards<'p> {
     }
 
     /// The agents of an instance: one, or two for an interaction.
-    pub fn roots(&self, instance: u32) -> smallvec::SmallVec<[usize; 2]> {
+    pub fn roots(&self, instance: u32) -> SmallVec<[usize; 2]> {
         let roots = self.instances[instance as usize].roots;
         let n = if matches!(self.definition(instance).origin, Origin::Pair(_)) { 2 } else { 1 };
         roots[..n].iter().map(|&agent| agent as usize).collect()
@@ -253,25 +272,43 @@ impl<'p> Guards<'p> {
         self.instances[instance as usize].rising as usize + shape.first + place(agents, shape, slots)
     }
 
-    /// The atom and the slots, bindings filled in, of an atom instance; none where the binding is not allowed (`other`).
+    /// The atom and the slots, bindings filled in, of an atom instance.
     pub fn atom_slots(&self, agents: &Agents<'_>, index: usize) -> (&'p Atom, Slots) {
         let instance = self.atoms[index].instance;
         let definition = self.definition(instance);
-        let offset = index - self.instances[instance as usize].atoms as usize;
-        let atom = definition.atoms.partition_point(|shape| shape.first <= offset) - 1;
-        let shape = &definition.atoms[atom];
+        let (atom, bound) = self.bindings(agents, index);
         let mut slots = self.slots(agents, instance);
-        let mut rest = offset - shape.first;
-        for &(slot, ty) in shape.binders.iter().rev() {
-            let n = agents.of_type[ty].len();
-            slots[slot] = agents.of_type[ty][rest % n];
-            rest /= n;
+        for &(binder, agent) in &bound {
+            slots[binder.slot] = agent;
         }
-        if !shape.binders.is_empty() {
+        if !bound.is_empty() {
             agents.follow_links(definition.frame, &mut slots);
         }
         let guard = definition.guard.expect("an atom belongs to a guard");
         (&guard.atoms[atom], slots)
+    }
+
+    /// The atom of an atom instance, and the agents that the quantifiers around it bind, innermost first.
+    fn bindings(&self, agents: &Agents<'_>, index: usize) -> (usize, SmallVec<[(Binder, usize); 2]>) {
+        let instance = self.atoms[index].instance;
+        let shapes = &self.definition(instance).atoms;
+        let offset = index - self.instances[instance as usize].atoms as usize;
+        let atom = shapes.partition_point(|shape| shape.first <= offset) - 1;
+        let mut rest = offset - shapes[atom].first;
+        let agent = |&binder: &Binder| {
+            let of_type = &agents.of_type[binder.ty];
+            let agent = of_type[rest % of_type.len()];
+            rest /= of_type.len();
+            (binder, agent)
+        };
+        (atom, shapes[atom].binders.iter().rev().map(agent).collect())
+    }
+
+    /// Whether `other` leaves out an agent that an atom instance binds.
+    fn leaves_out(&self, agents: &Agents<'_>, index: usize) -> bool {
+        let roots = self.roots(self.atoms[index].instance);
+        let (_, bound) = self.bindings(agents, index);
+        bound.iter().any(|(binder, agent)| binder.other && roots.contains(agent))
     }
 
     /// The range of an instance's atom instances.
@@ -283,10 +320,9 @@ impl<'p> Guards<'p> {
 
 /// The rank of the bindings in `slots` among all bindings.
 fn place(agents: &Agents<'_>, shape: &AtomShape, slots: &Slots) -> usize {
-    shape
-        .binders
-        .iter()
-        .fold(0, |place, &(slot, ty)| place * agents.of_type[ty].len() + agents.agents[slots[slot]].rank)
+    shape.binders.iter().fold(0, |place, &Binder { slot, ty, .. }| {
+        place * agents.of_type[ty].len() + agents.agents[slots[slot]].rank
+    })
 }
 
 /// Whether a relation is true where g is zero. A crossing stays as it is there.
@@ -369,11 +405,11 @@ fn define<'p>(
             quantified.dedup();
         }
     }
-    let lay_out = |lists: Vec<Vec<(usize, usize)>>| {
+    let lay_out = |lists: Vec<Vec<Binder>>| {
         let mut first = 0;
         let mut shapes = Vec::new();
         for binders in lists {
-            let n: usize = binders.iter().map(|&(_, ty)| agents.of_type[ty].len()).product();
+            let n: usize = binders.iter().map(|binder| agents.of_type[binder.ty].len()).product();
             shapes.push(AtomShape { first, binders });
             first += n;
         }
@@ -386,9 +422,9 @@ fn define<'p>(
 
 /// Finds the quantifiers around each atom.
 struct Binders {
-    atoms: Vec<Vec<(usize, usize)>>,
-    rising: Vec<Vec<(usize, usize)>>,
-    around: Vec<(usize, usize)>,
+    atoms: Vec<Vec<Binder>>,
+    rising: Vec<Vec<Binder>>,
+    around: Vec<Binder>,
 }
 
 impl Binders {
@@ -398,7 +434,8 @@ impl Binders {
             Condition::Atom(atom) => self.atoms[*atom] = self.around.clone(),
             Condition::And(all) | Condition::Or(all) => all.iter().for_each(|condition| self.walk(condition)),
             Condition::Exists(quantified) | Condition::Forall(quantified) => {
-                self.around.push((quantified.slot, quantified.ty));
+                let Quantified { slot, ty, other, .. } = *quantified;
+                self.around.push(Binder { slot, ty, other });
                 self.walk(&quantified.body);
                 self.around.pop();
             }

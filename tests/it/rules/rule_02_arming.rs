@@ -226,6 +226,21 @@ fn rule_02_other_leaves_out_self() {
 }
 
 #[test]
+fn rule_02_nobody_searches_for_self_where_other_leaves_it_out() {
+    // o.x - x would be zero all the time for o = self, a root that can neither be excluded nor isolated
+    let run = simulate(
+        "agent Runner(v: real) { state x = 0  flow { x' = v*time }
+                                 overtaken: when exists o in other Runner: o.x > x + 4 { }
+                                 behind: when exists o in other Runner: o.x > x { } }
+         system { slow = Runner(v = 1)  fast = Runner(v = 3) }
+         run { until 3  tolerance 1e-10 }",
+    );
+    assert_eq!(run.stats.undecided_roots, 0);
+    assert_eq!(run.log(), ["0 Runner.behind slow", "0 Runner.overtaken slow"]);
+    all_near(&[0.0, 2.0], &run.events.iter().map(|event| event.time).collect::<Vec<_>>(), 1e-9);
+}
+
+#[test]
 fn rule_02_rising_waits_until_the_condition_has_been_false() {
     // x = sin t; x >= -1/2 is true at once, false from 7 pi/6 to 11 pi/6
     let text = |guard: &str| {
