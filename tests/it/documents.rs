@@ -116,6 +116,19 @@ fn the_two_commands_of_the_readme_are_what_ci_runs() {
 }
 
 #[test]
+fn every_model_is_in_the_list_of_models() {
+    let list = document("docs/MODELS.md");
+    let rows = list.lines().filter_map(|line| line.strip_prefix("| [")?.split(']').next());
+    let mut listed: Vec<String> = rows.map(|name| format!("{name}.hy")).collect();
+    listed.sort();
+    let files = fs::read_dir(root().join("models")).unwrap();
+    let names = files.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut models: Vec<String> = names.filter(|name| name.ends_with(".hy")).collect();
+    models.sort();
+    assert_eq!(listed, models);
+}
+
+#[test]
 fn every_model_says_in_its_first_comment_what_it_shows() {
     for entry in fs::read_dir(root().join("models")).unwrap() {
         let path = entry.unwrap().path();

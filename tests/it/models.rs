@@ -1,6 +1,29 @@
 //! Do the shipped models run, and end as they say?
 
+mod rectifier;
+mod stick_slip;
+mod aircraft;
+mod genetic_switch;
+mod relay_clock;
+mod navigation;
+mod collide_and_stick;
+mod billiards;
+mod epidemic;
+mod platoon;
+
 use crate::harness::{Case, Ended, near};
+
+/// Where f, positive at `from`, first is not: found in steps of `step`, then by halving.
+fn first_root(f: &dyn Fn(f64) -> f64, from: f64, step: f64) -> f64 {
+    let sign = f(from).signum();
+    let n = (0..).find(|n| f(from + step * f64::from(n + 1)) * sign <= 0.0).expect("there is a root");
+    let (mut lo, mut hi) = (from + step * f64::from(n), from + step * f64::from(n + 1));
+    for _ in 0..60 {
+        let middle = 0.5 * (lo + hi);
+        if f(middle) * sign > 0.0 { lo = middle } else { hi = middle }
+    }
+    hi
+}
 
 #[test]
 fn two_cars_meet() {

@@ -1,0 +1,43 @@
+// epidemic.hy: people walk about a square; who is ill infects whom it comes near, is ill for a while, and then immune.
+// Shows an interaction that is not the same for both, one guard for each ordered pair: only an ill `a` infects a healthy
+// `b`; and changes of mode that are made by another agent.
+
+param n: int         = 60
+param side: real [m] = 60
+param reach: real [m] = 3
+param ill_for: real [s] = 30
+param seeds: int     = 2                     // who are ill at first
+let   columns = ceil(sqrt(n))
+
+agent Person(k: int) {
+  state x: real [m] = side*(mod(k, columns) + 0.5)/columns,
+        y: real [m] = side*(floor(k/columns) + 0.5)/columns
+  discrete u: real [m/s] = cos(2.4*k^2),   // 1 m/s in all directions
+           v: real [m/s] = sin(2.4*k^2),
+           victims: int = 0
+  flow { x' = u  y' = v }
+  left:   when x <= 0    { u := -u }
+  right:  when x >= side { u := -u }
+  bottom: when y <= 0    { v := -v }
+  top:    when y >= side { v := -v }
+
+  initial mode Healthy { }
+  mode Ill {
+    recover: after ill_for -> Immune
+  }
+  mode Immune { }
+}
+
+interaction Meet(a: Person, b: Person) {
+  infect: when a is Ill and b is Healthy and (a.x - b.x)^2 + (a.y - b.y)^2 <= reach^2 {
+    a.victims := a.victims + 1
+    b -> Ill
+  }
+}
+
+system {
+  first  = Person[seeds](k = index) in Ill
+  others = Person[n - seeds](k = seeds + index)
+}
+
+run { until 5 [min]  record Person every 0.5 [s] to "epidemic.csv"  events to "epidemic_events.csv" }
