@@ -3,12 +3,12 @@
 // left, and turn right again. Shows resets of a heading, a timed mode, guards over the other aircraft, and an assert.
 // After C. Tomlin, G. Pappas and S. Sastry, 1998, who turn the heading at once too.
 
-param v:       real [m/s] = 250
-param r:       real [km]  = 10               // radius of the half circles
-param alert:   real [km]  = 20
-param safe:    real [km]  = 9.26             // 5 nautical miles
-param angle:  real [deg] = 120                // the angle between the courses; 180 is head-on
-param far:     real [km]  = 60               // from the crossing of the courses, at first
+param v:     real [m/s] = 250
+param r:     real [km]  = 10                 // radius of the half circles
+param alert: real [km]  = 20
+param safe:  real [km]  = 9.26               // 5 nautical miles
+param angle: real [deg] = 120                // between the courses; 180 is head-on
+param far:   real [km]  = 60                 // from where the courses cross, at first
 let   omega = v/r
 
 fn dist2(a: Aircraft, b: Aircraft) = (a.x - b.x)^2 + (a.y - b.y)^2

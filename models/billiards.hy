@@ -2,17 +2,18 @@
 // Shows an interaction with one guard for each pair, and what must not change: the energy at every event, and the
 // momentum of two discs that meet. Other sizes: hyc run billiards.hy -p n=30
 
-param n: int         = 12
-param half: real [m] = 5                     // half the side of the box
-param r: real [m]    = 0.5                   // radius of a disc
+param n:     int        = 12
+param half:  real [m]   = 5                  // half the side of the box
+param r:     real [m]   = 0.5                // radius of a disc
+param speed: real [m/s] = 3                  // along a side, at most, at first
 let   columns = ceil(sqrt(n))
 let   cell    = 2*half/columns               // at first each disc is in a cell of its own
 
 agent Disc(m: real [kg]) {
   state x: real [m] = cell*(mod(index, columns) + 0.5) - half,
         y: real [m] = cell*(floor(index/columns) + 0.5) - half
-  discrete u: real [m/s] = 3*sin(2*index + 1),
-           v: real [m/s] = 3*cos(3*index)
+  discrete u: real [m/s] = speed*sin(2*index + 1),
+           v: real [m/s] = speed*cos(3*index)
   let energy = m*(u^2 + v^2)/2
   flow { x' = u  y' = v }
   left:   when x <= r - half { u := -u }

@@ -2,18 +2,19 @@
 // Shows an interaction that is not the same for both, one guard for each ordered pair: only an ill `a` infects a healthy
 // `b`; and changes of mode that are made by another agent.
 
-param n: int         = 60
-param side: real [m] = 60
-param reach: real [m] = 3
-param ill_for: real [s] = 30
-param seeds: int     = 2                     // who are ill at first
+param n:       int        = 60
+param side:    real [m]   = 60
+param pace:    real [m/s] = 1
+param reach:   real [m]   = 3                // who is so near catches it
+param ill_for: real [s]   = 30
+param seeds:   int        = 2                // who are ill at first
 let   columns = ceil(sqrt(n))
 
 agent Person(k: int) {
   state x: real [m] = side*(mod(k, columns) + 0.5)/columns,
         y: real [m] = side*(floor(k/columns) + 0.5)/columns
-  discrete u: real [m/s] = cos(2.4*k^2),   // 1 m/s in all directions
-           v: real [m/s] = sin(2.4*k^2),
+  discrete u: real [m/s] = pace*cos(2.4*k^2),  // in all directions
+           v: real [m/s] = pace*sin(2.4*k^2),
            victims: int = 0
   flow { x' = u  y' = v }
   left:   when x <= 0    { u := -u }

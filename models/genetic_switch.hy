@@ -4,14 +4,14 @@
 // chattering; and a reset that crosses two thresholds in one instant. After R. Alur and others, 2001: transcription does
 // nothing below one threshold, rises linearly up to another, and is at its full rate beyond.
 
-param growth: real [1/h]        = 1.2
-param leak:   real [nmol/L/h]   = 1          // of signal, by a full colony in the dark
-param boost:  real [1/h]        = 0.1        // more of it for each nmol/L of enzyme
-param full:   real [nmol/L/h]   = 50         // rate at which the enzyme is made
-param low:    real [nmol/L]     = 0.5        // thresholds of the signal
-param high:   real [nmol/L]     = 5
-param d_signal: real [1/h]      = 1          // decays
-param d_enzyme: real [1/h]      = 0.5
+param growth: real [1/h]      = 1.2
+param leak:   real [nmol/L/h] = 1            // of signal, by a full colony in the dark
+param boost:  real [1/h]      = 0.1          // more of it for each nmol/L of enzyme
+param full:   real [nmol/L/h] = 50           // at most so much enzyme is made
+param low:    real [nmol/L]   = 0.5          // thresholds of the signal
+param high:   real [nmol/L]   = 5
+param d_signal: real [1/h]    = 1            // decays
+param d_enzyme: real [1/h]    = 0.5
 
 agent Colony {
   state n: real               = 0.01,        // size, as a share of what the water can feed
@@ -39,4 +39,7 @@ agent Colony {
 
 system { colony = Colony() }
 
-run { until 44 [h]  tolerance 1e-9  record colony, colony.light every 0.1 [h] to "genetic_switch.csv"  events to "genes.csv" }
+run {
+  until 44 [h]  tolerance 1e-9  absolute 1e-15          // in SI: 1 nmol/L is 1e-6 mol/m^3
+  record colony, colony.light every 0.1 [h] to "genetic_switch.csv"  events to "genes.csv"
+}

@@ -4,11 +4,11 @@
 // mode: on the edge of two cells all guards are armed afresh, and the one behind is held. After A. Fehnker and
 // F. Ivancic, 2004.
 
-param n: int           = 8                   // robots
+param n:    int        = 8                   // robots
 param side: real [m]   = 1                   // of a cell
 param wind: real [m/s] = 1
-param a: real [1/s]    = -1.2                // A = [a, b; b, a]
-param b: real [1/s]    = 0.1
+param a:    real [1/s] = -1.2                // A = [a, b; b, a]
+param b:    real [1/s] = 0.1
 
 agent Cell(column: int, row: int, heading: real [deg], kind: int) { }   // heading from north; kind 1: target, 2: forbidden
 
