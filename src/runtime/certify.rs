@@ -20,7 +20,8 @@ impl Engine<'_, '_> {
     pub fn certify_up_to(&mut self, cover: f64) {
         while let Some(&due) = self.queues.uncertified.peek() {
             let enough = if cover == f64::INFINITY { (self.next_cause() + 1.0).min(ENDLESS) } else { cover };
-            if due.time >= enough {
+            // The loop ends the run; until then a search of many roots must not go on.
+            if due.time >= enough || self.interrupted() {
                 return;
             }
             self.queues.uncertified.pop();

@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::sync::atomic::{self, AtomicBool};
 
 use crate::base::{Diagnostic, Span};
 use crate::codegen::program::{Integrator, Program};
@@ -92,6 +93,8 @@ pub struct Engine<'p, 'o> {
     pub repetitions: Repetitions,
     /// Who is told.
     pub observer: &'o mut dyn Observer,
+    /// Set from another thread to end the run.
+    pub interrupt: &'o AtomicBool,
     /// Limits.
     pub limits: Limits,
     /// The end of the run, s; infinite if none is set.
@@ -130,6 +133,7 @@ impl<'p, 'o> Engine<'p, 'o> {
     pub fn new(
         program: &'p Program,
         limits: &Limits,
+        interrupt: &'o AtomicBool,
         observer: &'o mut dyn Observer,
     ) -> Result<Self, Failure> {
         let run = &program.run;
@@ -155,6 +159,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             agents,
             guards,
             observer,
+            interrupt,
             limits: limits.clone(),
             time_end,
             n_events: 0,
@@ -164,6 +169,11 @@ impl<'p, 'o> Engine<'p, 'o> {
             warnings: Vec::new(),
             stop: None,
         })
+    }
+
+    /// Whether the user wants the run to end.
+    pub fn interrupted(&self) -> bool {
+        self.interrupt.load(atomic::Ordering::Relaxed)
     }
 
     /// Tells the observer the state of every agent at the present time (rule 12).

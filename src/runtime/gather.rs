@@ -36,6 +36,10 @@ impl Engine<'_, '_> {
         let window = first + time_resolution(first);
         let cover = self.cover().min(self.time_end);
         self.certify_up_to(window.min(cover));
+        if self.interrupted() {
+            // Something earlier may not have been found yet.
+            return Ok(());
+        }
         let flips = self.pop_flips(window);
         let schedules = self.pop_schedules(window);
         let seeds: Vec<u32> = flips

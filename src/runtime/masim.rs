@@ -4,8 +4,6 @@
 //! comparison is certified up to the cover before any agent is advanced beyond it, so that one segment an agent is
 //! enough; an event is executed when nothing earlier can be found any more; what it writes is cut there.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use crate::runtime::act::Written;
 use crate::runtime::advance::{Advance, Obstacle};
 use crate::runtime::certify::ENDLESS;
@@ -18,12 +16,12 @@ use crate::runtime::repetition::Finding;
 use crate::runtime::solve::time_resolution;
 use crate::runtime::stiffness::fastest_rate;
 
-/// How many rounds of the loop pass between two looks at the interrupt flag.
+/// How many rounds of the loop pass between two reports of progress.
 const ROUNDS: u64 = 1024;
 
 impl Engine<'_, '_> {
     /// Runs to the end.
-    pub fn run(&mut self, interrupt: &AtomicBool) -> Result<End, Failure> {
+    pub fn run(&mut self) -> Result<End, Failure> {
         self.begin()?;
         let mut rounds: u64 = 0;
         loop {
@@ -32,15 +30,14 @@ impl Engine<'_, '_> {
             }
             rounds += 1;
             if rounds.is_multiple_of(ROUNDS) {
-                if interrupt.load(Ordering::Relaxed) {
-                    let cover = self.cover().min(self.time_end);
-                    self.present.go(cover.max(self.present.time));
-                    return Ok(End::Interrupted);
-                }
                 self.tell_progress()?;
             }
             let cover = self.cover().min(self.time_end);
             self.certify_up_to(cover);
+            if self.interrupted() {
+                self.present.go(cover.max(self.present.time));
+                return Ok(End::Interrupted);
+            }
             let cause = self.next_cause();
             let sample = self.recorder.next();
             if sample < cause && sample <= cover {

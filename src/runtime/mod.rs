@@ -73,11 +73,11 @@ pub fn simulate(
     interrupt: &AtomicBool,
     observer: &mut dyn Observer,
 ) -> Outcome {
-    let mut engine = match Engine::new(program, limits, observer) {
+    let mut engine = match Engine::new(program, limits, interrupt, observer) {
         Ok(engine) => engine,
         Err(failure) => return stillborn(failure),
     };
-    let end = match engine.run(interrupt) {
+    let end = match engine.run() {
         Ok(end) => end,
         Err(failure) => end_of(failure),
     };

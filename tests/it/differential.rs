@@ -4,12 +4,12 @@
 //! `HYC_MODELS=10000 cargo test differential -- --nocapture` runs so many, from number `HYC_FIRST` (0) on; with
 //! `HYC_MODELS=1 HYC_FIRST=n` that is model n alone, and with `HYC_FILE=path` the model of that file.
 
-mod dice;
+pub mod dice;
 mod evaluate;
 mod world;
 mod boundary;
 mod reference;
-mod generate;
+pub mod generate;
 mod compare;
 
 use std::sync::Mutex;

@@ -29,3 +29,4 @@ mod accuracy;
 mod adams;
 mod differential;
 mod draws;
+mod robust;

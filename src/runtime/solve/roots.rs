@@ -177,7 +177,7 @@ pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_ma
             Look::Clear => {}
             Look::Flip(flip) => return Search::Flip(flip),
             Look::Divide if looked_at >= PIECES_PATIENT && e - s < small && f.undefined_all_over(s, e) => {}
-            Look::Divide if looked_at >= pieces_max && s - start > 1e-6 * length => return Search::Until(s),
+            Look::Divide if looked_at >= pieces_max && s - start > 1e-3 * length => return Search::Until(s),
             Look::Divide if looked_at >= pieces_max => return Search::Undecided,
             Look::Divide if looked_at < pieces_max && divisible(s, e) => {
                 let at_middle = f.value(middle);
@@ -249,7 +249,8 @@ fn decide(jet: &[f64; 3], rounding: &[f64; 3]) -> Direction {
 /// Settles the start of a search: clear, on the boundary going up, or changing at once.
 fn enter(f: &mut Turned<'_>, s: f64, known: Known) -> Result<Entry, Flip> {
     let jet = f.jet(s);
-    let band = known.slack.max(jet[1].abs() * time_resolution(s)).min(f.rounding_max);
+    let by_rate = known.slack.max(jet[1].abs() * time_resolution(s)).min(1e-3 * (1.0 + jet[0].abs()));
+    let band = by_rate.min(f.rounding_max);
     if jet[0] > band || jet[0] == f64::INFINITY {
         return Ok(Entry::Clear);
     }

@@ -126,3 +126,15 @@ fn rule_08_a_true_assert_that_touches() {
     );
     assert!(run.false_asserts.is_empty(), "{:?}", run.false_asserts);
 }
+
+#[test]
+fn rule_08_an_invariant_is_left_faster_than_time_resolves() {
+    for rate in ["1e13", "1e100", "1e300"] {
+        let text = format!(
+            "agent A {{ state x = 0  flow {{ x' = {rate} }}  invariant x <= 0.5 }}\nsystem {{ a = A() }}\nrun {{ until 1 }}"
+        );
+        let (run, found) = simulate_error(&text);
+        assert_eq!(found.code, "HY0501");
+        near(run.time, 0.0, 1e-12);
+    }
+}
