@@ -232,6 +232,6 @@ fn recorded(draft: &mut Draft, ty: TypeId, declared: &Let, name: &str) -> Result
     } else {
         LetValue::Number(number(draft, &mut scope, declared.value, name)?)
     };
-    let column = Column { name: declared.name.clone(), factor: declared.factor, boolean };
+    let column = Column { name: declared.name.clone(), scale: declared.scale, boolean };
     Ok(LetSystem { column, mode: declared.mode.index(), frame: scope.frame, value })
 }

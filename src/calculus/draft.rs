@@ -78,8 +78,7 @@ impl<'m> Draft<'m> {
 }
 
 fn columns(ty: &AgentType) -> AgentSystem {
-    let column =
-        |v: &Variable| Column { name: v.name.clone(), factor: v.factor, boolean: v.ty == Type::Bool };
+    let column = |v: &Variable| Column { name: v.name.clone(), scale: v.scale, boolean: v.ty == Type::Bool };
     AgentSystem {
         name: ty.name.clone(),
         layout: Layout {

@@ -10,6 +10,7 @@
 
 use crate::base::{Arena, Idx, Span};
 use crate::calculus::graph::{Graph, NodeId};
+use crate::math::Scale;
 pub use crate::model::ir::{Block, Instance, Integrator, Population, Record, Run, VarRef};
 
 /// Names a [`Function`].
@@ -165,8 +166,8 @@ pub struct AgentSystem {
 pub struct Column {
     /// Its name.
     pub name: String,
-    /// SI value = factor * value in the declared unit.
-    pub factor: f64,
+    /// What one declared unit is in SI.
+    pub scale: Scale,
     /// Whether it holds a boolean.
     pub boolean: bool,
 }

@@ -3,7 +3,7 @@
 //! In: nothing but numbers. Out: [`Op`], the table of operators whose [`Op::eval`] is *the* meaning that the
 //! interpreter, constant folding and machine code share bit for bit; [`elementary`], the functions behind it;
 //! [`Interval`], bounds on an operator over a box; [`runge_kutta`], the coefficients that steps are made of; [`draw`],
-//! random numbers.
+//! random numbers; [`Scale`], the sizes of units.
 //! Promised: the same bits on every CPU and for every thread count, because nothing here looks at the CPU's
 //! features and no multiplication is fused into an addition unless it is written so.
 
@@ -12,9 +12,11 @@ pub mod op;
 pub mod interval;
 pub mod runge_kutta;
 pub mod draw;
+pub mod scale;
 
 pub use interval::Interval;
 pub use op::{Binary, Op, Unary};
+pub use scale::Scale;
 
 #[cfg(test)]
 mod tests;

@@ -119,6 +119,8 @@ impl<'a> Context<'a> {
         let mut scope = Scope::of(Home::Agent(ty, mode));
         let rate = self.lower_into(&mut scope, &equation.rate, Slot::plain(Ty::Real), &what);
         let Some(state) = self.flowing(ty, name) else { return };
+        let slot = self.agents[ty.index()].states[state].per_time();
+        self.expect(rate, slot, &what);
         if rate.ty != Ty::Wrong && self.facts[rate.id.index()].quantified {
             self.refuse("quantifiers in flows", equation.rate.span);
         }

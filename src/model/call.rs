@@ -184,7 +184,7 @@ impl<'a> Context<'a> {
                 Some((slot, _)) => {
                     let what =
                         format!("argument `{}` of `{name}`", self.model.functions[function].params[k].0);
-                    self.lower_into(scope, arg, *slot, &what)
+                    self.lower_given(scope, arg, *slot, &what)
                 }
                 None => self.lower(scope, arg),
             };
@@ -196,7 +196,7 @@ impl<'a> Context<'a> {
         }
         values.extend(signature.formals.iter().skip(args.len()).filter_map(|(_, default)| *default));
         let wrong = values.iter().any(|value| value.ty == Ty::Wrong);
-        let ty = if wrong { Ty::Wrong } else { signature.result };
+        let ty = if wrong { Ty::Wrong } else { signature.result.ty };
         self.push(ExprKind::Call(function, values.iter().map(|value| value.id).collect()), ty, span)
     }
 

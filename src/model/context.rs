@@ -9,7 +9,7 @@ use super::evaluate::Evaluator;
 use super::ir::{BinderId, Expr, ExprId, ExprKind, FunctionId, InteractionId, ModeId, Model, TypeId, VarRef};
 use super::limits;
 use super::operands::for_each_operand;
-use super::types::{Slot, Ty};
+use super::types::{Quantity, Slot, Ty};
 use crate::base::{Diagnostic, SourceMap, Span};
 use crate::math::Op;
 use crate::syntax::ast;
@@ -36,6 +36,8 @@ pub(super) struct Facts {
     pub varies_with_locals: bool,
     /// A quantifier stands in it, or in what it calls.
     pub quantified: bool,
+    /// A number without a unit, as it stands in the text.
+    pub bare: bool,
 }
 
 /// What a name of the file stands for.
@@ -77,6 +79,8 @@ pub(super) struct Definition<'a> {
     pub progress: Progress,
     /// Some other text mentions it.
     pub used: bool,
+    /// Where the dimension of its value comes from.
+    pub quantity: Quantity,
 }
 
 impl Definition<'_> {
@@ -145,8 +149,8 @@ pub(super) enum Meaning {
 pub(super) struct Signature {
     /// What its parameters take.
     pub formals: Vec<(Slot, Option<Value>)>,
-    /// The type of its value.
-    pub result: Ty,
+    /// What its value is.
+    pub result: Slot,
 }
 
 /// The names of an agent type.
@@ -161,6 +165,8 @@ pub(super) struct AgentNames<'a> {
     pub states: Vec<Slot>,
     /// See `params`.
     pub discretes: Vec<Slot>,
+    /// Where the dimensions of the `let`s come from, by their numbers in the product.
+    pub lets: Vec<Quantity>,
     /// The modes' texts, by number; none for the root.
     pub modes: Vec<Option<&'a ast::Mode>>,
     /// The `let`s of each mode; those of the root are members.
@@ -205,7 +211,7 @@ pub(super) struct Scope<'a> {
     /// Whose.
     pub home: Home,
     /// The parameters of the enclosing function.
-    pub locals: Vec<(&'a str, Ty)>,
+    pub locals: Vec<(&'a str, Slot)>,
     /// Names bound by quantifiers, the innermost last.
     pub bound: Vec<(&'a str, BinderId)>,
 }
@@ -234,6 +240,16 @@ impl Scope<'_> {
     }
 }
 
+/// A place where a dimension is asked for.
+pub(super) struct Goal {
+    /// What stands there.
+    pub value: ExprId,
+    /// What must be there.
+    pub slot: Slot,
+    /// At the beginning of a sentence: "the value of `x`".
+    pub what: String,
+}
+
 /// The state of the whole check.
 pub(super) struct Context<'a> {
     /// The texts; the command line's values are added when they are wrong.
@@ -242,6 +258,10 @@ pub(super) struct Context<'a> {
     pub model: Model,
     /// By expression.
     pub facts: Vec<Facts>,
+    /// Where the dimensions of numbers, arguments and named expressions come from.
+    pub quantities: FxHashMap<ExprId, Quantity>,
+    /// What must have a certain dimension.
+    pub goals: Vec<Goal>,
     /// The names of the file.
     pub globals: FxHashMap<&'a str, Global>,
     /// All definitions.
@@ -277,6 +297,8 @@ impl<'a> Context<'a> {
             sources,
             model: Model::default(),
             facts: Vec::new(),
+            quantities: FxHashMap::default(),
+            goals: Vec::new(),
             globals: FxHashMap::default(),
             definitions: Vec::new(),
             running: Vec::new(),
@@ -336,6 +358,20 @@ impl<'a> Context<'a> {
     /// Adds a number.
     pub fn number(&mut self, value: f64, ty: Ty, span: Span) -> Value {
         self.push(ExprKind::Number(value), ty, span)
+    }
+
+    /// Adds a number without a unit.
+    pub fn bare_number(&mut self, value: f64, ty: Ty, span: Span) -> Value {
+        let number = self.number(value, ty, span);
+        self.facts[number.id.index()].bare = true;
+        number
+    }
+
+    /// Asks for the dimension of what a value goes into; nothing if that has none.
+    pub fn expect(&mut self, value: Value, slot: Slot, what: &str) {
+        if slot.unit.is_some() && value.ty != Ty::Wrong {
+            self.goals.push(Goal { value: value.id, slot, what: what.to_string() });
+        }
     }
 
     /// Stands for something that has been reported.

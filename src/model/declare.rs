@@ -7,7 +7,7 @@ use super::context::{
 };
 use super::error::{NameError, TypeError};
 use super::ir::{AgentType, Interaction, Link, Mode, ModeId, Type, TypeId, Variable};
-use super::types::{Slot, Ty};
+use super::types::{Quantity, Slot, Ty};
 use crate::base::{Arena, Span};
 use crate::syntax::ast::{self, AgentItem, BodyItem, Item, VariableKind};
 
@@ -65,7 +65,13 @@ impl<'a> Context<'a> {
 
     /// Adds a definition to be worked out later.
     pub fn add_definition(&mut self, name: &'a ast::Name, body: Body<'a>) -> usize {
-        self.definitions.push(Definition { name, body, progress: Progress::Waiting, used: false });
+        self.definitions.push(Definition {
+            name,
+            body,
+            progress: Progress::Waiting,
+            used: false,
+            quantity: Quantity::Unchecked,
+        });
         self.definitions.len() - 1
     }
 
@@ -107,6 +113,7 @@ impl<'a> Context<'a> {
             params: Vec::new(),
             states: Vec::new(),
             discretes: Vec::new(),
+            lets: Vec::new(),
             modes: vec![None],
             mode_lets: vec![FxHashMap::default()],
             incomplete: false,
@@ -333,7 +340,7 @@ fn variable(name: &ast::Name, ty: Option<&ast::TypeName>, slot: Slot) -> Variabl
         name: name.text.clone(),
         ty: ty_ir,
         unit: ty.and_then(|ty| ty.unit.as_ref()).map(|unit| unit.text.clone()),
-        factor: slot.unit.factor(),
+        scale: slot.scale(),
         span: name.span,
     }
 }

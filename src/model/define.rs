@@ -12,8 +12,9 @@ use super::limits;
 use super::mentions::names_in;
 use super::order::in_order_of_need;
 use super::overrides::Given;
-use super::types::{Slot, Ty};
+use super::types::{Quantity, Slot, Ty};
 use crate::base::Span;
+use crate::math::Scale;
 use crate::syntax::ast;
 
 /// Defines everything that has been declared.
@@ -64,8 +65,8 @@ impl<'a> Context<'a> {
         self.running.push(number);
         self.depth += limits::DEPTH_OF_DEFINITION;
         let meaning = match self.definitions[number].body {
-            Body::Param(item) => self.define_param(item),
-            Body::Let(item) => self.define_let(item),
+            Body::Param(item) => self.define_param(number, item),
+            Body::Let(item) => self.define_let(number, item),
             Body::Function(item) => self.define_function(item),
             Body::AgentLet(ty, mode, item) => self.define_agent_let(ty, mode, item),
             Body::PairLet(pair, item) => self.define_pair_let(pair, item),
@@ -87,7 +88,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    fn define_param(&mut self, item: &'a ast::Param) -> Meaning {
+    fn define_param(&mut self, number: usize, item: &'a ast::Param) -> Meaning {
         let declared = item.ty.as_ref().map(|ty| self.slot(ty));
         let what = format!("the value of `{}`", item.name.text);
         let mut scope = Scope::of(Home::File);
@@ -100,6 +101,7 @@ impl<'a> Context<'a> {
             (None, Ty::Int) => Slot::plain(Ty::Real),
             (None, ty) => Slot::plain(ty),
         };
+        self.definitions[number].quantity = slot.quantity();
         if value.ty == Ty::Wrong {
             return Meaning::Failed;
         }
@@ -163,33 +165,36 @@ impl<'a> Context<'a> {
         self.report(TypeError::NotAllowed { what, found, span, help });
     }
 
-    /// The value of a `let`, which is a number or a condition.
-    fn lower_let(&mut self, scope: &mut Scope<'a>, item: &'a ast::Let) -> Value {
-        let value = match &item.ty {
-            Some(ty) => {
-                let slot = self.slot(ty);
-                let slot = self.no_text(slot, "a `let`", ty.span);
+    /// The value of a `let`, which is a number or a condition, and what is declared of it.
+    fn lower_let(&mut self, scope: &mut Scope<'a>, item: &'a ast::Let) -> (Value, Option<Slot>) {
+        let slot = item.ty.as_ref().map(|ty| {
+            let slot = self.slot(ty);
+            self.no_text(slot, "a `let`", ty.span)
+        });
+        let value = match slot {
+            Some(slot) => {
                 self.lower_into(scope, &item.value, slot, &format!("the value of `{}`", item.name.text))
             }
             None => self.lower(scope, &item.value),
         };
         match value.ty {
-            Ty::Real | Ty::Int | Ty::Bool | Ty::Wrong => value,
+            Ty::Real | Ty::Int | Ty::Bool | Ty::Wrong => (value, slot),
             Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody => {
                 self.no_reference(value.ty, "a `let`", item.value.span);
-                Value { ty: Ty::Wrong, ..value }
+                (Value { ty: Ty::Wrong, ..value }, slot)
             }
         }
     }
 
-    fn define_let(&mut self, item: &'a ast::Let) -> Meaning {
-        let value = self.lower_let(&mut Scope::of(Home::File), item);
+    fn define_let(&mut self, number: usize, item: &'a ast::Let) -> Meaning {
+        let (value, slot) = self.lower_let(&mut Scope::of(Home::File), item);
         if value.ty == Ty::Wrong {
             return Meaning::Failed;
         }
         if !self.facts[value.id.index()].closed {
-            return Meaning::Shared(value);
+            return self.shared(value, slot);
         }
+        self.definitions[number].quantity = slot.map_or(Quantity::As(value.id), |slot| slot.quantity());
         match self.constant(value, &item.value, &format!("the value of `{}`", item.name.text)) {
             Some(number) => Meaning::Number(number, value.ty),
             None => Meaning::Failed,
@@ -197,25 +202,33 @@ impl<'a> Context<'a> {
     }
 
     fn define_pair_let(&mut self, pair: usize, item: &'a ast::Let) -> Meaning {
-        let value = self.lower_let(&mut Scope::of(Home::Pair(pair)), item);
-        if value.ty == Ty::Wrong { Meaning::Failed } else { Meaning::Shared(value) }
+        let (value, slot) = self.lower_let(&mut Scope::of(Home::Pair(pair)), item);
+        if value.ty == Ty::Wrong { Meaning::Failed } else { self.shared(value, slot) }
+    }
+
+    /// A `let` whose users share its expression.
+    fn shared(&mut self, value: Value, slot: Option<Slot>) -> Meaning {
+        let quantity = slot.map_or(Quantity::As(value.id), |slot| slot.quantity());
+        self.quantities.entry(value.id).or_insert(quantity);
+        Meaning::Shared(value)
     }
 
     fn define_agent_let(&mut self, ty: TypeId, mode: ModeId, item: &'a ast::Let) -> Meaning {
-        let value = self.lower_let(&mut Scope::of(Home::Agent(ty, mode)), item);
+        let (value, slot) = self.lower_let(&mut Scope::of(Home::Agent(ty, mode)), item);
         if value.ty == Ty::Wrong {
             return Meaning::Failed;
         }
         let unit = item.ty.as_ref().and_then(|ty| ty.unit.as_ref());
-        let factor =
-            unit.and_then(|unit| super::units::parse(&unit.text).ok()).map_or(1.0, |unit| unit.factor());
+        let scale = slot.map_or(Scale::ONE, |slot| slot.scale());
+        let quantity = slot.map_or(Quantity::As(value.id), |slot| slot.quantity());
+        self.agents[ty.index()].lets.push(quantity);
         let lets = &mut self.model.types[ty].lets;
         lets.push(Let {
             name: item.name.text.clone(),
             mode,
             value: value.id,
             unit: unit.map(|unit| unit.text.clone()),
-            factor,
+            scale,
             span: item.name.span,
         });
         Meaning::Let(lets.len() - 1, value.ty)
@@ -245,7 +258,7 @@ impl<'a> Context<'a> {
                 let (name, span) = (formal.name.text.clone(), formal.name.span);
                 self.report(NameError::DefaultsLast { name, span });
             }
-            scope.locals.push((&formal.name.text, slot.ty));
+            scope.locals.push((&formal.name.text, slot));
             formals.push((slot, default));
         }
         let declared = item.ty.as_ref().map(|ty| self.slot(ty));
@@ -265,7 +278,8 @@ impl<'a> Context<'a> {
         }
         let names = item.formals.iter().map(|formal| formal.name.text.clone());
         let params = names.zip(formals.iter().map(|(slot, _)| slot.ty.ir())).collect();
-        self.signatures.push(Signature { formals, result: body.ty });
+        let result = Slot { ty: body.ty, ..declared.unwrap_or(Slot::plain(body.ty)) };
+        self.signatures.push(Signature { formals, result });
         let (name, span) = (item.name.text.clone(), item.name.span);
         Meaning::Function(self.model.functions.push(Function { name, params, body: body.id, span }))
     }

@@ -5,6 +5,7 @@ use super::error::{TypeError, ValueError};
 use super::evaluate::Known;
 use super::ir::ExprId;
 use super::types::{Slot, Ty};
+use super::units::Unit;
 use crate::base::Diagnostic;
 use crate::math::draw::{Distribution, Key};
 use crate::syntax::ast;
@@ -72,7 +73,7 @@ impl<'a> Context<'a> {
         }
         let slot = match distribution {
             Distribution::Uniform | Distribution::Normal => slot,
-            Distribution::Exponential => Slot { unit: slot.unit.inverse(), ..slot },
+            Distribution::Exponential => Slot { unit: slot.unit.and_then(Unit::inverse), ..slot },
         };
         let values = args.iter().zip(distribution.parameters()).map(|(arg, name)| {
             let what = format!("{name} of `{}`", distribution.name());

@@ -75,9 +75,12 @@ impl<'m> Writer<'m> {
     fn agent(&mut self, ty: &'m AgentType) {
         self.line(0, &format!("agent {}", ty.name));
         for (word, variables) in [("param", &ty.params), ("state", &ty.states), ("discrete", &ty.discretes)] {
-            for Variable { name, ty, unit, factor, .. } in variables {
-                let text =
-                    format!("{word} {name}: {}{}", self.ty(*ty), unit_text(unit.as_deref(), Some(*factor)));
+            for Variable { name, ty, unit, scale, .. } in variables {
+                let text = format!(
+                    "{word} {name}: {}{}",
+                    self.ty(*ty),
+                    unit_text(unit.as_deref(), Some(scale.factor()))
+                );
                 self.line(1, &text);
             }
         }
@@ -88,7 +91,7 @@ impl<'m> Writer<'m> {
         }
         for item in &ty.lets {
             let of = self.ty(self.model.exprs[item.value].ty);
-            let unit = unit_text(item.unit.as_deref(), Some(item.factor));
+            let unit = unit_text(item.unit.as_deref(), Some(item.scale.factor()));
             let path = &ty.modes[item.mode].path;
             let place = if path.is_empty() { String::new() } else { format!("{path}: ") };
             let value = self.formulas.text(item.value, Names::default());

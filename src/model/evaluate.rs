@@ -52,10 +52,20 @@ impl Evaluator {
         if let ExprKind::Number(value) = model.exprs[id].kind {
             return Some(value);
         }
+        self.run(model, id, &[known.index], known)
+    }
+
+    /// The value of an expression that reads nothing but numbers and the parameters of its function; none if the budget is
+    /// used up.
+    pub fn evaluate_with(&mut self, model: &Model, id: ExprId, locals: &[f64]) -> Option<f64> {
+        self.run(model, id, locals, &Known::default())
+    }
+
+    fn run(&mut self, model: &Model, id: ExprId, locals: &[f64], known: &Known) -> Option<f64> {
         self.work.clear();
         self.values.clear();
         self.locals.clear();
-        self.locals.push(known.index);
+        self.locals.extend(locals);
         let mut base = 0;
         self.work.push(Task::Visit(id));
         while let Some(task) = self.work.pop() {

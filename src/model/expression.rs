@@ -7,7 +7,7 @@ use super::context::{Context, Scope, Value};
 use super::error::{LimitError, TypeError};
 use super::ir::ExprKind;
 use super::limits;
-use super::types::{Slot, Ty};
+use super::types::{Quantity, Slot, Ty};
 use crate::base::Span;
 use crate::math::Op;
 use crate::syntax::ast::{self, CompareOp, ProductOp, SumOp, UnaryOp};
@@ -54,7 +54,7 @@ impl<'a> Context<'a> {
             ast::ExprKind::And(terms) => self.lower_terms(scope, Op::And, terms),
             ast::ExprKind::Or(terms) => self.lower_terms(scope, Op::Or, terms),
             ast::ExprKind::If { condition, then, otherwise } => {
-                self.lower_if(scope, condition, then, otherwise, span)
+                self.lower_if(scope, condition, [then, otherwise], Slot::plain(Ty::Wrong), span)
             }
             ast::ExprKind::Quantifier(quantifier) => self.lower_quantifier(scope, quantifier, span),
         }
@@ -69,15 +69,38 @@ impl<'a> Context<'a> {
         slot: Slot,
         what: &str,
     ) -> Value {
+        let value = self.lower_given(scope, expr, slot, what);
+        self.expect(value, slot, what);
+        value
+    }
+
+    /// As [`lower_into`](Self::lower_into), without a word about the dimension.
+    pub fn lower_given(
+        &mut self,
+        scope: &mut Scope<'a>,
+        expr: &'a ast::Expr,
+        slot: Slot,
+        what: &str,
+    ) -> Value {
         if let (Ty::Real, Some(value)) = (slot.ty, bare_literal(expr)) {
-            let value = slot.unit.si(value);
-            if !value.is_finite() {
-                self.report(TypeError::TooLarge { span: expr.span });
-            }
-            return self.number(value, Ty::Real, expr.span);
+            return self.declared_number(value, slot, expr.span);
         }
-        let value = self.lower(scope, expr);
+        let value = match &expr.kind {
+            ast::ExprKind::If { condition, then, otherwise } if slot.unit.is_some() => {
+                self.lower_if(scope, condition, [then, otherwise], slot, expr.span)
+            }
+            _ => self.lower(scope, expr),
+        };
         self.fit(value, slot.ty, expr.span, what)
+    }
+
+    /// A bare literal in the unit of what it goes into.
+    fn declared_number(&mut self, value: f64, slot: Slot, span: Span) -> Value {
+        let value = slot.scale().to_si(value);
+        if !value.is_finite() {
+            self.report(TypeError::TooLarge { span });
+        }
+        self.number(value, Ty::Real, span)
     }
 
     /// Converts a value to the type that is wanted, or reports that it cannot be.
@@ -143,13 +166,12 @@ impl<'a> Context<'a> {
     fn lower_literal(&mut self, value: f64, text: &str, unit: Option<&ast::UnitText>, span: Span) -> Value {
         let Some(unit) = unit else {
             let ty = if text.contains(['.', 'e', 'E']) { Ty::Real } else { Ty::Int };
-            return self.number(value, ty, span);
+            return self.bare_number(value, ty, span);
         };
-        let value = self.unit(unit).si(value);
-        if !value.is_finite() {
-            self.report(TypeError::TooLarge { span });
-        }
-        self.number(value, Ty::Real, span)
+        let unit = Slot { ty: Ty::Real, unit: Some(self.unit(unit)), place: Some(span) };
+        let number = self.declared_number(value, unit, span);
+        self.quantities.insert(number.id, unit.quantity());
+        number
     }
 
     fn lower_negation(&mut self, scope: &mut Scope<'a>, operand: &'a ast::Expr, span: Span) -> Value {
@@ -158,7 +180,13 @@ impl<'a> Context<'a> {
             (&operand.kind, &self.model.exprs[value.id].kind)
         {
             let negative = -number;
-            return self.number(negative, value.ty, span);
+            let operand = value.id;
+            let value = self.number(negative, value.ty, span);
+            self.facts[value.id.index()].bare = self.facts[operand.index()].bare;
+            if let Some(&quantity) = self.quantities.get(&operand) {
+                self.quantities.insert(value.id, quantity);
+            }
+            return value;
         }
         self.apply(Op::Neg, vec![value.id], value.ty, span)
     }
@@ -180,6 +208,7 @@ impl<'a> Context<'a> {
             if f64::from(constant as i32) == constant {
                 let whole = base.ty == Ty::Int && power.ty == Ty::Int && constant >= 0.0;
                 let number = self.number(constant, Ty::Int, exponent.span);
+                self.quantities.insert(number.id, Quantity::As(power.id));
                 let ty = if whole { Ty::Int } else { Ty::Real };
                 return self.apply(Op::Powi, vec![base.id, number.id], ty, span);
             }
@@ -242,17 +271,27 @@ impl<'a> Context<'a> {
         all
     }
 
+    /// A branch of an `if` that goes into something: a bare literal is in its declared unit.
+    fn lower_branch(&mut self, scope: &mut Scope<'a>, branch: &'a ast::Expr, slot: Slot) -> Value {
+        match (&branch.kind, bare_literal(branch)) {
+            (_, Some(value)) if slot.unit.is_some() => self.declared_number(value, slot, branch.span),
+            (ast::ExprKind::If { condition, then, otherwise }, _) => {
+                self.lower_if(scope, condition, [then, otherwise], slot, branch.span)
+            }
+            _ => self.lower(scope, branch),
+        }
+    }
+
     fn lower_if(
         &mut self,
         scope: &mut Scope<'a>,
         condition: &'a ast::Expr,
-        then: &'a ast::Expr,
-        otherwise: &'a ast::Expr,
+        [then, otherwise]: [&'a ast::Expr; 2],
+        slot: Slot,
         span: Span,
     ) -> Value {
         let condition = self.lower_condition(scope, condition);
-        let yes = self.lower(scope, then);
-        let no = self.lower(scope, otherwise);
+        let [yes, no] = [then, otherwise].map(|branch| self.lower_branch(scope, branch, slot));
         let ty = match (yes.ty, no.ty) {
             (Ty::Wrong, _) | (_, Ty::Wrong) => Ty::Wrong,
             (Ty::Bool, Ty::Bool) => Ty::Bool,

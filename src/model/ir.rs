@@ -4,7 +4,7 @@
 //! without agents in it is already a number. Values are SI. Modes form a tree whose root (number 0) is the agent itself.
 
 use crate::base::{Arena, Idx, Span};
-use crate::math::Op;
+use crate::math::{Op, Scale};
 pub use crate::model::integrator::Integrator;
 
 /// Names an [`Expr`].
@@ -231,8 +231,8 @@ pub struct Variable {
     pub ty: Type,
     /// The declared unit's text, if any.
     pub unit: Option<String>,
-    /// What one declared unit is in SI: SI value = factor * value in the declared unit.
-    pub factor: f64,
+    /// What one declared unit is in SI.
+    pub scale: Scale,
     /// Where it is declared.
     pub span: Span,
 }
@@ -259,10 +259,10 @@ pub struct Let {
     pub mode: ModeId,
     /// Its definition, read with the agent as `self`.
     pub value: ExprId,
-    /// Unit and factor for recording, as in [`Variable`].
+    /// Unit and its size for recording, as in [`Variable`].
     pub unit: Option<String>,
-    /// See [`Variable::factor`].
-    pub factor: f64,
+    /// See [`Variable::scale`].
+    pub scale: Scale,
     /// Where it is declared.
     pub span: Span,
 }

@@ -16,5 +16,12 @@ pub const DEPTH_MAX: usize = 1_600;
 /// What a definition that is looked up inside another counts in [`DEPTH_MAX`].
 pub const DEPTH_OF_DEFINITION: usize = 8;
 
+/// How many expressions of functions are measured again for the dimensions of their calls, all together; later calls are checked by
+/// what their functions declare.
+pub const INLINED_STEPS_MAX: u64 = 10_000_000;
+
+/// How deep calls inside calls are measured again for their dimensions.
+pub const INLINED_DEPTH_MAX: usize = 64;
+
 /// How many branches an `if ... else if ...` among actions may have.
 pub const BRANCHES_MAX: usize = 256;

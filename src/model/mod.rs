@@ -9,6 +9,8 @@ mod integrator;
 pub mod ir;
 pub mod limits;
 mod suggest;
+mod dimension;
+mod measure;
 mod units;
 mod types;
 mod error;
@@ -38,6 +40,8 @@ mod population;
 mod make;
 mod record;
 mod run;
+mod consistency;
+mod origin;
 mod formula;
 mod dump;
 mod lint;
@@ -97,6 +101,7 @@ pub fn check(ast: &Ast, sources: &mut SourceMap, files: &mut dyn Files, settings
     run::settle(&mut context, ast, settings);
     population::populate(&mut context, ast, files, &initials);
     run::trajectories(&mut context, ast, settings);
+    consistency::check_dimensions(&mut context);
     let warnings = lint::lint(&mut context);
     context.finish(warnings)
 }

@@ -9,6 +9,7 @@ use rustc_hash::FxHashMap;
 
 use super::Files;
 use super::context::{Context, Home, Member, Scope};
+use super::dimension::Dimension;
 use super::draw::Given;
 use super::error::{FileError, LimitError, SystemError, TypeError, ValueError};
 use super::initial::Initials;
@@ -347,6 +348,7 @@ impl<'a> Context<'a> {
             Some(Count::Exactly(expr)) => {
                 let what = "the size of an array";
                 let value = self.lower_number(&mut Scope::of(Home::File), expr, "[ ]");
+                self.expect(value, Slot::of(Dimension::ONE), what);
                 let count = self.constant(value, expr, what)?;
                 if count.fract() != 0.0 || count < 0.0 {
                     self.report(ValueError::BadCount { value: count, span: expr.span });

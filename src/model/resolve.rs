@@ -24,7 +24,10 @@ impl<'a> Context<'a> {
             return self.push(ExprKind::Bound(binder), Ty::Agent(ty), span);
         }
         if let Some(number) = scope.locals.iter().position(|(local, _)| *local == name) {
-            return self.push(ExprKind::Local(number), scope.locals[number].1, span);
+            let slot = scope.locals[number].1;
+            let value = self.push(ExprKind::Local(number), slot.ty, span);
+            self.quantities.insert(value.id, slot.quantity());
+            return value;
         }
         match scope.home {
             Home::Agent(ty, mode) => {
@@ -57,8 +60,8 @@ impl<'a> Context<'a> {
 
     fn lower_constant(&mut self, scope: &Scope<'a>, name: &str, span: Span) -> Value {
         match (name, scope.home) {
-            ("pi", _) => self.number(PI, Ty::Real, span),
-            ("inf", _) => self.number(f64::INFINITY, Ty::Real, span),
+            ("pi", _) => self.bare_number(PI, Ty::Real, span),
+            ("inf", _) => self.bare_number(f64::INFINITY, Ty::Real, span),
             ("true", _) => self.number(1.0, Ty::Bool, span),
             ("false", _) => self.number(0.0, Ty::Bool, span),
             ("none", _) => self.push(ExprKind::NoAgent, Ty::Nobody, span),
@@ -115,7 +118,11 @@ impl<'a> Context<'a> {
     /// The value that a definition gives to the place where its name stands.
     fn lower_definition(&mut self, number: usize, name: &str, span: Span) -> Value {
         match self.mention(number) {
-            Meaning::Number(value, ty) => self.number(value, ty, span),
+            Meaning::Number(value, ty) => {
+                let value = self.number(value, ty, span);
+                self.quantities.insert(value.id, self.definitions[number].quantity);
+                value
+            }
             Meaning::Text(_) => self.number(0.0, Ty::Text, span),
             Meaning::Shared(value) => value,
             Meaning::Function(_) => {

@@ -4,6 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::Settings;
 use super::context::{Context, Home, Scope};
+use super::dimension::Dimension;
 use super::error::{FileError, RunError};
 use super::ir::{Integrator, Record};
 use super::suggest::closest;
@@ -31,23 +32,39 @@ const LATER: &[&str] = &[
 struct Number {
     name: &'static str,
     needs: &'static str,
+    /// None: absolute tolerances are of all states.
+    dimension: Option<Dimension>,
     allowed: fn(f64) -> bool,
 }
 
-const UNTIL: Number =
-    Number { name: "until", needs: "a time from 0 on", allowed: |value| value >= 0.0 && value.is_finite() };
+const UNTIL: Number = Number {
+    name: "until",
+    needs: "a time from 0 on",
+    dimension: Some(Dimension::TIME),
+    allowed: |value| value >= 0.0 && value.is_finite(),
+};
 const TOLERANCE: Number = Number {
     name: "tolerance",
     needs: "a number above 0",
+    dimension: Some(Dimension::ONE),
     allowed: |value| value > 0.0 && value.is_finite(),
 };
-const ABSOLUTE: Number =
-    Number { name: "absolute", needs: "a number above 0", allowed: |value| value > 0.0 && value.is_finite() };
-const EVERY: Number =
-    Number { name: "every", needs: "a time above 0", allowed: |value| value > 0.0 && value.is_finite() };
+const ABSOLUTE: Number = Number {
+    name: "absolute",
+    needs: "a number above 0",
+    dimension: None,
+    allowed: |value| value > 0.0 && value.is_finite(),
+};
+const EVERY: Number = Number {
+    name: "every",
+    needs: "a time above 0",
+    dimension: Some(Dimension::TIME),
+    allowed: |value| value > 0.0 && value.is_finite(),
+};
 const SEED: Number = Number {
     name: "seed",
     needs: "a whole number from 0 to 2^53",
+    dimension: Some(Dimension::ONE),
     allowed: |value| value.fract() == 0.0 && (0.0..=9_007_199_254_740_992.0).contains(&value),
 };
 
@@ -175,7 +192,8 @@ impl<'a> Context<'a> {
 
     fn run_number(&mut self, setting: &Number, expr: &'a ast::Expr) -> Option<f64> {
         let what = format!("`{}`", setting.name);
-        let value = self.lower_into(&mut Scope::of(Home::File), expr, Slot::plain(Ty::Real), &what);
+        let slot = setting.dimension.map_or(Slot::plain(Ty::Real), Slot::of);
+        let value = self.lower_into(&mut Scope::of(Home::File), expr, slot, &what);
         let value = self.constant(value, expr, &what)?;
         self.in_range(setting, value, expr.span)
     }

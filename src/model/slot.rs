@@ -46,7 +46,7 @@ impl Context<'_> {
         if !matches!(ty, Ty::Real | Ty::Wrong) {
             self.report(TypeError::UnitOnType { ty: item.name.text.clone(), span: text.span });
         }
-        Slot { ty, unit: self.unit(text) }
+        Slot { ty, unit: Some(self.unit(text)), place: Some(text.span) }
     }
 
     /// A unit; one, and a diagnostic, if the text is none.

@@ -117,7 +117,7 @@ fn read_cell(cell: &str, slot: Slot) -> Option<f64> {
         },
         Ty::Int => cell.parse::<f64>().ok().filter(|value| value.is_finite() && value.fract() == 0.0),
         Ty::Real | Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::Wrong => {
-            cell.parse::<f64>().ok().map(|value| slot.unit.si(value)).filter(|value| value.is_finite())
+            cell.parse::<f64>().ok().map(|value| slot.scale().to_si(value)).filter(|value| value.is_finite())
         }
     }
 }

@@ -9,6 +9,7 @@ use rustc_hash::FxHashMap;
 
 use super::actions::Written;
 use super::context::{Context, Home, Scope, Value};
+use super::dimension::Dimension;
 use super::error::{ActionError, ModeError, NameError, TypeError};
 use super::ir::{BinderId, ExprKind, ModeId, Transition, Trigger, TypeId};
 use super::types::{Slot, Ty};
@@ -140,7 +141,7 @@ impl<'a> Context<'a> {
         let witnesses = guard.map(|guard| guard.witnesses).unwrap_or_default();
         scope.bound.extend(&witnesses);
         let priority = item.priority.as_ref().map(|priority| {
-            let slot = Slot::plain(Ty::Real);
+            let slot = Slot::of(Dimension::ONE);
             self.lower_into(&mut scope, priority, slot, "a priority").id
         });
         let mut written = Written::default();
@@ -165,7 +166,7 @@ impl<'a> Context<'a> {
         needs: &'static str,
         allowed: fn(f64) -> bool,
     ) -> Value {
-        let value = self.lower_into(scope, expr, Slot::plain(Ty::Real), what);
+        let value = self.lower_into(scope, expr, Slot::of(Dimension::TIME), what);
         if value.ty != Ty::Wrong
             && self.facts[value.id.index()].closed
             && let Some(seconds) = self.evaluate_closed(value.id)

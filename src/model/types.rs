@@ -1,8 +1,10 @@
 //! Types while a model is being checked: those of the product, and the few that never leave this floor.
 
-use super::ir::{AgentType, Type, TypeId};
+use super::dimension::Dimension;
+use super::ir::{AgentType, ExprId, Type, TypeId};
 use super::units::Unit;
-use crate::base::Arena;
+use crate::base::{Arena, Span};
+use crate::math::Scale;
 
 /// The type of an expression that is being checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,13 +94,56 @@ impl From<Type> for Ty {
 pub(super) struct Slot {
     /// The declared type.
     pub ty: Ty,
-    /// The declared unit.
-    pub unit: Unit,
+    /// The declared unit; none: its dimension is not checked.
+    pub unit: Option<Unit>,
+    /// Where the unit is declared; none if the language says it.
+    pub place: Option<Span>,
 }
 
 impl Slot {
     /// A type without a unit.
     pub fn plain(ty: Ty) -> Slot {
-        Slot { ty, unit: Unit::ONE }
+        Slot { ty, unit: None, place: None }
     }
+
+    /// A real number of a dimension that the language asks for; a bare literal is in SI.
+    pub fn of(dimension: Dimension) -> Slot {
+        Slot { ty: Ty::Real, unit: Some(Unit { dimension, scale: Scale::ONE }), place: None }
+    }
+
+    /// What a rate of it goes into.
+    pub fn per_time(self) -> Slot {
+        let dimension = self.unit.and_then(|unit| unit.dimension.over(Dimension::TIME));
+        Slot { place: self.place, ..dimension.map_or(Slot::plain(Ty::Real), Slot::of) }
+    }
+
+    /// The size of the declared unit; that of SI if none is.
+    pub fn scale(&self) -> Scale {
+        self.unit.map_or(Scale::ONE, |unit| unit.scale)
+    }
+
+    /// What is known of the dimension of what it holds.
+    pub fn quantity(&self) -> Quantity {
+        match (self.unit, self.place) {
+            (Some(unit), Some(place)) => Quantity::Declared { dimension: unit.dimension, place },
+            (Some(_), None) | (None, _) => Quantity::Unchecked,
+        }
+    }
+}
+
+/// Where the dimension of a name or of a literal comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Quantity {
+    /// It has no unit.
+    #[default]
+    Unchecked,
+    /// It has a unit of its own.
+    Declared {
+        /// The unit's dimension.
+        dimension: Dimension,
+        /// Where the unit stands.
+        place: Span,
+    },
+    /// It is a name for an expression.
+    As(ExprId),
 }

@@ -1,59 +1,40 @@
 //! Units: from the text between the brackets to a dimension and a factor.
 //!
-//! `unit = factor ((*|/) factor)*`, `factor = (name | 1) (^ integer)?`. The factor is kept as a quotient of two numbers, so
-//! that 10 ms is 10*1/1000 = 0.01, correctly rounded. Definitions: the SI brochure, 9th edition, with `g` as the
-//! prefixed unit of mass.
+//! `unit = factor ((*|/) factor)*`, `factor = (name | 1) (^ integer)?`.
 
-use std::f64::consts::PI;
+mod table;
 
+use super::dimension::Dimension;
 use super::suggest::closest;
+use crate::math::Scale;
+use table::{Entry, PREFIXES, SPELT, UNITS};
 
 /// What a unit is in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
-    /// Exponents of m, kg, s, A, K, mol, cd.
-    pub dimension: [i8; 7],
-    /// One unit is `numerator / denominator` in SI.
-    pub numerator: f64,
-    /// See `numerator`.
-    pub denominator: f64,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// What one unit is in SI.
+    pub scale: Scale,
 }
 
 impl Unit {
     /// The number one.
-    pub const ONE: Unit = Unit { dimension: [0; 7], numerator: 1.0, denominator: 1.0 };
+    pub const ONE: Unit = Unit { dimension: Dimension::ONE, scale: Scale::ONE };
 
-    /// One over this unit.
-    pub fn inverse(&self) -> Unit {
-        let dimension = self.dimension.map(i8::saturating_neg);
-        Unit { dimension, numerator: self.denominator, denominator: self.numerator }
-    }
-
-    /// A value in this unit, in SI.
-    pub fn si(&self, value: f64) -> f64 {
-        value * self.numerator / self.denominator
-    }
-
-    /// What one unit is in SI.
-    pub fn factor(&self) -> f64 {
-        self.numerator / self.denominator
+    /// One over this unit; none if it is beyond all measure.
+    pub fn inverse(self) -> Option<Unit> {
+        Unit::ONE.times(self, -1)
     }
 
     fn times(self, other: Unit, exponent: i32) -> Option<Unit> {
-        let mut dimension = self.dimension;
-        for (sum, part) in dimension.iter_mut().zip(other.dimension) {
-            *sum = i8::try_from(i32::from(*sum) + i32::from(part) * exponent).ok()?;
-        }
-        let numerator = other.numerator.powi(exponent.abs());
-        let denominator = other.denominator.powi(exponent.abs());
-        let (numerator, denominator) =
-            if exponent < 0 { (denominator, numerator) } else { (numerator, denominator) };
-        let unit = Unit {
-            dimension,
-            numerator: self.numerator * numerator,
-            denominator: self.denominator * denominator,
-        };
-        (unit.factor().is_finite() && unit.factor() > 0.0).then_some(unit)
+        let power = other.dimension.power(i64::from(exponent), 1)?;
+        let dimension = self.dimension.times(power)?;
+        let above = other.scale.numerator.powi(exponent.abs());
+        let below = other.scale.denominator.powi(exponent.abs());
+        let (above, below) = if exponent < 0 { (below, above) } else { (above, below) };
+        let scale = Scale::new(self.scale.numerator * above, self.scale.denominator * below)?;
+        Some(Unit { dimension, scale })
     }
 }
 
@@ -152,24 +133,8 @@ impl<'t> Scanner<'t> {
 }
 
 fn named(name: &str, at: (usize, usize)) -> Result<Unit, UnitProblem> {
-    if name == "1" {
-        return Ok(Unit::ONE);
-    }
-    if let Some(unit) = UNITS.iter().find(|unit| unit.name == name) {
-        return Ok(unit.unit());
-    }
-    for (prefix, ten_to_the) in PREFIXES {
-        let Some(rest) = name.strip_prefix(prefix) else { continue };
-        if let Some(entry) = UNITS.iter().find(|unit| unit.name == rest && unit.prefixed) {
-            let mut unit = entry.unit();
-            let power = 10f64.powi(ten_to_the.abs());
-            if *ten_to_the < 0 {
-                unit.denominator *= power
-            } else {
-                unit.numerator *= power
-            }
-            return Ok(unit);
-        }
+    if let Some(unit) = find(name) {
+        return Ok(unit);
     }
     if name.is_empty() || name.starts_with(|c: char| c.is_ascii_digit()) {
         return Err(UnitProblem::Malformed { expected: "the name of a unit or `1`", at });
@@ -178,77 +143,50 @@ fn named(name: &str, at: (usize, usize)) -> Result<Unit, UnitProblem> {
     if matches!(lower.as_str(), "degc" | "degf" | "°c" | "°f" | "celsius" | "fahrenheit") {
         return Err(UnitProblem::Offset { name: name.to_string(), at });
     }
-    let common =
-        ["km", "cm", "mm", "um", "nm", "kg", "mg", "ms", "us", "ns", "kHz", "MHz", "kN", "kW", "kPa", "mV"];
-    let similar = closest(name, UNITS.iter().map(|unit| unit.name).chain(common));
-    Err(UnitProblem::Unknown { name: name.to_string(), similar, at })
+    Err(UnitProblem::Unknown { name: name.to_string(), similar: similar(name), at })
 }
 
-struct Entry {
-    name: &'static str,
-    dimension: [i8; 7],
-    numerator: f64,
-    denominator: f64,
-    prefixed: bool,
-}
-
-impl Entry {
-    fn unit(&self) -> Unit {
-        Unit { dimension: self.dimension, numerator: self.numerator, denominator: self.denominator }
+/// `1`, a unit of the table, or one with a prefix. A name of the table comes first: `min` is no milli-inch.
+fn find(name: &str) -> Option<Unit> {
+    if name == "1" {
+        return Some(Unit::ONE);
     }
+    let unit = |entry: &Entry, above: f64, below: f64| {
+        let scale = Scale::new(entry.numerator * above, entry.denominator * below)?;
+        Some(Unit { dimension: entry.dimension, scale })
+    };
+    if let Some(entry) = UNITS.iter().find(|entry| entry.name == name) {
+        return unit(entry, 1.0, 1.0);
+    }
+    PREFIXES.iter().find_map(|(prefix, ten_to_the)| {
+        let rest = name.strip_prefix(prefix)?;
+        let entry = UNITS.iter().find(|entry| entry.name == rest && entry.prefixed)?;
+        let power = 10f64.powi(ten_to_the.abs());
+        if *ten_to_the < 0 { unit(entry, 1.0, power) } else { unit(entry, power, 1.0) }
+    })
 }
 
-const fn si(name: &'static str, dimension: [i8; 7]) -> Entry {
-    Entry { name, dimension, numerator: 1.0, denominator: 1.0, prefixed: true }
+/// What was probably meant: a name that is spelt out, a power without its sign, or a unit that is spelt alike.
+fn similar(name: &str) -> Option<String> {
+    let base = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let spelt = |name: &str| SPELT.iter().find(|(word, _)| *word == name).map(|(_, unit)| unit.to_string());
+    if let Some(unit) = spelt(name).or_else(|| spelt(&name.to_lowercase())) {
+        return Some(unit);
+    }
+    if base.len() < name.len() && find(base).is_some() {
+        return Some(format!("{base}^{}", &name[base.len()..]));
+    }
+    let prefixed = UNITS.iter().filter(|entry| entry.prefixed);
+    let common = prefixed
+        .flat_map(|entry| ["k", "m", "c", "u", "M", "n"].map(|prefix| format!("{prefix}{}", entry.name)));
+    let common = common.collect::<Vec<_>>();
+    closest(name, UNITS.iter().map(|entry| entry.name).chain(common.iter().map(String::as_str)))
 }
-
-const fn other(name: &'static str, dimension: [i8; 7], numerator: f64, denominator: f64) -> Entry {
-    Entry { name, dimension, numerator, denominator, prefixed: false }
-}
-
-//                                            m kg  s  A  K mol cd
-#[rustfmt::skip]
-const UNITS: &[Entry] = &[
-    si("m",   [1, 0, 0, 0, 0, 0, 0]),
-    Entry { name: "g", dimension: [0, 1, 0, 0, 0, 0, 0], numerator: 1.0, denominator: 1000.0, prefixed: true },
-    si("s",   [0, 0, 1, 0, 0, 0, 0]),
-    si("A",   [0, 0, 0, 1, 0, 0, 0]),
-    si("K",   [0, 0, 0, 0, 1, 0, 0]),
-    si("mol", [0, 0, 0, 0, 0, 1, 0]),
-    si("cd",  [0, 0, 0, 0, 0, 0, 1]),
-    si("Hz",  [0, 0, -1, 0, 0, 0, 0]),
-    si("N",   [1, 1, -2, 0, 0, 0, 0]),
-    si("J",   [2, 1, -2, 0, 0, 0, 0]),
-    si("W",   [2, 1, -3, 0, 0, 0, 0]),
-    si("Pa",  [-1, 1, -2, 0, 0, 0, 0]),
-    si("C",   [0, 0, 1, 1, 0, 0, 0]),
-    si("V",   [2, 1, -3, -1, 0, 0, 0]),
-    si("Ohm", [2, 1, -3, -2, 0, 0, 0]),
-    si("S",   [-2, -1, 3, 2, 0, 0, 0]),
-    si("F",   [-2, -1, 4, 2, 0, 0, 0]),
-    si("H",   [2, 1, -2, -2, 0, 0, 0]),
-    si("T",   [0, 1, -2, -1, 0, 0, 0]),
-    si("Wb",  [2, 1, -2, -1, 0, 0, 0]),
-    si("rad", [0, 0, 0, 0, 0, 0, 0]),
-    Entry { name: "L", dimension: [3, 0, 0, 0, 0, 0, 0], numerator: 1.0, denominator: 1000.0, prefixed: true },
-    Entry { name: "bar", dimension: [-1, 1, -2, 0, 0, 0, 0], numerator: 1e5, denominator: 1.0, prefixed: true },
-    other("t",       [0, 1, 0, 0, 0, 0, 0], 1000.0, 1.0),
-    other("min",     [0, 0, 1, 0, 0, 0, 0], 60.0, 1.0),
-    other("h",       [0, 0, 1, 0, 0, 0, 0], 3600.0, 1.0),
-    other("d",       [0, 0, 1, 0, 0, 0, 0], 86400.0, 1.0),
-    other("deg",     [0, 0, 0, 0, 0, 0, 0], PI, 180.0),
-    other("percent", [0, 0, 0, 0, 0, 0, 0], 1.0, 100.0),
-    other("%",       [0, 0, 0, 0, 0, 0, 0], 1.0, 100.0),
-];
-
-#[rustfmt::skip]
-const PREFIXES: &[(&str, i32)] = &[
-    ("Y", 24), ("Z", 21), ("E", 18), ("P", 15), ("T", 12), ("G", 9), ("M", 6), ("k", 3), ("h", 2), ("da", 1),
-    ("d", -1), ("c", -2), ("m", -3), ("u", -6), ("µ", -6), ("n", -9), ("p", -12), ("f", -15), ("a", -18),
-];
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
 
     #[test]
@@ -269,8 +207,8 @@ mod tests {
             ("1", 5.0, 5.0, [0; 7]),
         ] {
             let unit = parse(text).unwrap_or_else(|problem| panic!("{text}: {problem:?}"));
-            assert_eq!(unit.si(value), si, "{text}");
-            assert_eq!(unit.dimension, dimension, "{text}");
+            assert_eq!(unit.scale.to_si(value), si, "{text}");
+            assert_eq!(unit.dimension, Dimension::of(dimension), "{text}");
         }
     }
 
@@ -283,7 +221,98 @@ mod tests {
         assert!(matches!(parse("m^"), Err(UnitProblem::Malformed { .. })));
         assert!(matches!(parse("m s"), Err(UnitProblem::Malformed { at: (2, 3), .. })));
         assert!(matches!(parse("m^999"), Err(UnitProblem::TooLarge { .. })));
-        assert!(matches!(parse("m^99*m^99"), Err(UnitProblem::TooLarge { .. })));
+        assert!(matches!(parse("Ym^99*m^99"), Err(UnitProblem::TooLarge { .. })));
         assert!(matches!(parse("kmin"), Err(UnitProblem::Unknown { .. })));
+    }
+
+    /// The rows of the table of units in the reference: names, size in SI, dimension, whether prefixes go with it.
+    fn documented() -> Vec<(Vec<String>, f64, Dimension, bool)> {
+        let text = include_str!("../../docs/LANGUAGE.md");
+        let table =
+            text.split("| unit | in SI | prefixes | |\n").nth(1).expect("the reference has the table");
+        let rows = table.lines().skip(1).take_while(|line| line.starts_with('|'));
+        rows.map(|row| {
+            let cells = row.split('|').map(str::trim).collect::<Vec<_>>();
+            let names = cells[1].split('`').skip(1).step_by(2).map(String::from).collect();
+            let (size, unit) = cells[2].split_once(' ').expect("a number and a unit");
+            let dimension = parse(unit).expect("a unit").dimension;
+            (names, size.parse().expect("a number"), dimension, cells[3] == "yes")
+        })
+        .collect()
+    }
+
+    #[test]
+    fn the_reference_shows_the_table_as_it_is() {
+        let mut shown = Vec::new();
+        for (names, size, dimension, prefixed) in documented() {
+            for name in names {
+                let unit = parse(&name).expect("the reference names units");
+                assert!((unit.scale.factor() / size - 1.0).abs() < 1e-15, "{name}: {}", unit.scale.factor());
+                assert_eq!(unit.dimension, dimension, "{name}");
+                assert_eq!(
+                    UNITS.iter().find(|entry| entry.name == name).map(|entry| entry.prefixed),
+                    Some(prefixed)
+                );
+                shown.push(name);
+            }
+        }
+        let here =
+            UNITS.iter().map(|entry| entry.name).filter(|name| *name != "\u{2126}").collect::<Vec<_>>();
+        shown.sort_unstable_by_key(|name| here.iter().position(|other| other == name));
+        assert_eq!(shown, here);
+    }
+
+    #[test]
+    fn no_name_has_two_meanings() {
+        let mut clashes = Vec::new();
+        for entry in UNITS.iter().filter(|entry| entry.prefixed) {
+            for (prefix, _) in PREFIXES {
+                let name = format!("{prefix}{}", entry.name);
+                if UNITS.iter().any(|other| other.name == name) {
+                    clashes.push(name);
+                }
+            }
+        }
+        clashes.sort_unstable();
+        assert_eq!(clashes, [""; 0]);
+        let mut names = UNITS.iter().map(|entry| entry.name).collect::<Vec<_>>();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), UNITS.len());
+        for (spelt, unit) in SPELT {
+            assert!(find(spelt).is_none(), "{spelt} is a unit");
+            assert!(parse(unit).is_ok(), "{unit} is none");
+        }
+    }
+
+    #[test]
+    fn what_was_meant_is_suggested() {
+        let suggestion = |text| match parse(text) {
+            Err(UnitProblem::Unknown { similar, .. }) => similar,
+            _ => None,
+        };
+        for (text, unit) in [
+            ("sec", "s"),
+            ("Hour", "h"),
+            ("kph", "km/h"),
+            ("Nm", "N*m"),
+            ("m2", "m^2"),
+            ("KM", "kM"),
+            ("kOhms", "kOhm"),
+            ("knots", "kn"),
+        ] {
+            assert_eq!(suggestion(text).as_deref(), Some(unit), "{text}");
+        }
+        assert_eq!(suggestion("qwertz"), None);
+    }
+
+    #[test]
+    fn the_units_of_si_have_the_size_one() {
+        for text in [
+            "m", "kg", "s", "N", "V", "Ohm", "rad", "kg*m/s^2", "g*km", "mm*km", "1/s", "J/kg/K", "mM",
+            "mg/mL",
+        ] {
+            assert_eq!(parse(text).map(|unit| unit.scale), Ok(Scale::ONE), "{text}");
+        }
     }
 }

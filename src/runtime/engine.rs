@@ -188,7 +188,7 @@ impl<'p, 'o> Engine<'p, 'o> {
                 .states(agent)
                 .iter()
                 .zip(&system.states)
-                .map(|(value, column)| value / column.factor)
+                .map(|(value, column)| column.scale.from_si(*value))
                 .collect();
             let first = system.layout.discrete(0);
             let discretes: Vec<Cell> = system
@@ -199,7 +199,7 @@ impl<'p, 'o> Engine<'p, 'o> {
                     if column.boolean {
                         Cell::Bool(value != 0.0)
                     } else {
-                        Cell::Number(value / column.factor)
+                        Cell::Number(column.scale.from_si(value))
                     }
                 })
                 .collect();

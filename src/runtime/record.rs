@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::codegen::program::{Layout, LetValue, Program, Record, VarRef};
+use crate::math::Scale;
 use crate::runtime::failure::Failure;
 use crate::runtime::observe::{Cell, Observer, Row};
 use crate::runtime::population::Agents;
@@ -194,16 +195,16 @@ impl<'p> Recorder<'p> {
         let row = &agents.agents[agent];
         let system = &self.program.types[row.ty];
         let layout: &Layout = &system.layout;
-        let number = |value: f64, boolean: bool, factor: f64| {
-            if boolean { Cell::Bool(value != 0.0) } else { Cell::Number(value / factor) }
+        let number = |value: f64, boolean: bool, scale: Scale| {
+            if boolean { Cell::Bool(value != 0.0) } else { Cell::Number(scale.from_si(value)) }
         };
         match variable {
-            VarRef::State(k) => number(present.states(agent)[k], false, system.states[k].factor),
+            VarRef::State(k) => number(present.states(agent)[k], false, system.states[k].scale),
             VarRef::Discrete(k) => {
-                number(row.aux[layout.discrete(k)], system.discretes[k].boolean, system.discretes[k].factor)
+                number(row.aux[layout.discrete(k)], system.discretes[k].boolean, system.discretes[k].scale)
             }
             VarRef::Param(k) => {
-                number(row.aux[layout.param(k)], system.params[k].boolean, system.params[k].factor)
+                number(row.aux[layout.param(k)], system.params[k].boolean, system.params[k].scale)
             }
             VarRef::Link(k) => {
                 let target = row.aux[layout.link(k)];
@@ -218,7 +219,7 @@ impl<'p> Recorder<'p> {
                 match &definition.value {
                     LetValue::Number(function) => {
                         let value = truth::value(agents, present, *function, &slots);
-                        number(value, definition.column.boolean, definition.column.factor)
+                        number(value, definition.column.boolean, definition.column.scale)
                     }
                     LetValue::Condition(guard) => {
                         Cell::Bool(truth::test(agents, present, guard, &definition.frame, &slots, &[agent]))

@@ -54,10 +54,14 @@ const FOREIGN: [(&str, &str); 16] = [
     ("!", "write `not`"),
 ];
 
+/// Characters beyond the language's own that units are written with.
+const UNIT_LETTERS: [char; 6] = ['µ', 'μ', 'Ω', '\u{2126}', '°', '%'];
+
 /// The tokens of a text.
 pub fn scan(file: FileId, text: &str) -> Result<Vec<Token>, SyntaxError> {
     let mut tokens = Vec::with_capacity(text.len() / 4);
     let mut at = 0;
+    let mut unit_end = 0;
     while let Some(character) = text[at..].chars().next() {
         let rest = &text[at..];
         let (kind, len) = if character.is_ascii_whitespace() || matches!(character, ';' | '\u{FEFF}') {
@@ -68,6 +72,8 @@ pub fn scan(file: FileId, text: &str) -> Result<Vec<Token>, SyntaxError> {
             continue;
         } else if is_word_start(character) {
             (TokenKind::Word, word_len(rest))
+        } else if at < unit_end && UNIT_LETTERS.contains(&character) {
+            (TokenKind::Word, character.len_utf8())
         } else if character.is_ascii_digit() || (character == '.' && starts_with_digit(&rest[1..])) {
             (TokenKind::Number, scan_number(file, at, rest)?)
         } else if character == '"' {
@@ -75,10 +81,22 @@ pub fn scan(file: FileId, text: &str) -> Result<Vec<Token>, SyntaxError> {
         } else {
             (TokenKind::Symbol, scan_symbol(file, at, rest)?)
         };
+        if character == '[' && opens_unit(text, tokens.last()) {
+            unit_end = at + rest.find([']', '\n']).unwrap_or(0);
+        }
         tokens.push(Token { kind, start: at, end: at + len });
         at += len;
     }
     Ok(tokens)
+}
+
+/// Whether a bracket behind this token holds a unit: behind a number or the word `real`.
+fn opens_unit(text: &str, before: Option<&Token>) -> bool {
+    before.is_some_and(|token| match token.kind {
+        TokenKind::Number => true,
+        TokenKind::Word => text[token.start..token.end] == *"real",
+        TokenKind::Text | TokenKind::Symbol => false,
+    })
 }
 
 fn is_word_start(character: char) -> bool {

@@ -145,7 +145,7 @@ pub fn with_flow(graph: Graph, rates: Vec<NodeId>) -> System {
         exit: ActionList::default(),
         transitions: Vec::new(),
     };
-    let column = |i| Column { name: format!("x{i}"), factor: 1.0, boolean: false };
+    let column = |i| Column { name: format!("x{i}"), scale: hyc::math::Scale::ONE, boolean: false };
     let agent = AgentSystem {
         name: "A".to_owned(),
         layout: Layout { n_states, n_params: N_COLUMNS, ..Layout::default() },

@@ -1,7 +1,7 @@
 //! Random numbers, random expressions of the model, and what they mean, said naively.
 
 use crate::base::Span;
-use crate::math::Op;
+use crate::math::{Op, Scale};
 use crate::model::ir::{
     AgentType, Expr, ExprId, ExprKind, Function, Let, Mode, ModeId, Model, Type, Variable,
 };
@@ -47,7 +47,7 @@ pub fn model() -> Model {
         name: name.to_owned(),
         ty,
         unit: None,
-        factor: 1.0,
+        scale: Scale::ONE,
         span: Span::default(),
     };
     let root = Mode {
@@ -88,7 +88,7 @@ pub fn model() -> Model {
         mode: ModeId::new(0),
         value,
         unit: None,
-        factor: 1.0,
+        scale: Scale::ONE,
         span: Span::default(),
     });
     let [a, b] = [0, 1].map(|k| push(&mut model, ExprKind::Local(k), Type::Real));

@@ -3,7 +3,7 @@ param n: int = 4                                 // overridden by the test
 param top: real [km/h] = 180
 param name: string = "core.csv"
 param lit = true
-let   ramp = 2*time                           // follows time: shared by those that read it
+let   ramp = 2 [m/s^2]*time                   // follows time: shared by those that read it
 let   half = n/2
 fn scaled(v: real [km/h], times: int = 2) = v*times
 fn ahead(me: Car, it: Car): real [m] = if it then it.x - me.x else inf
@@ -16,7 +16,7 @@ agent Car(v0: real [km/h] = 36, k: int = index, boss: Lamp) {
   let gap = ahead(self, lead)
   let sure = if lead and lead.x > x then lead.x - x else 0
   flow { x' = scaled(36) + boss.level + ramp
-         y' = if not lead then 0 else lead.x' + sure }
+         y' = if not lead then 0 else lead.x' + 1 [1/s]*sure }
   assert gap > 0 or not lead "too near"
   entry { lane := 0 }
   exit { lane := 1 }
@@ -44,7 +44,7 @@ agent Nothing { }
 
 interaction Meet(a: Car, b: Lamp) {
   let d = a.x - b.level
-  near: when d^2 + d <= 1 and b is On { a.x := d  b -> On  a -> Stop  if a.lit { b.level := 0 } }
+  near: when d^2 + d*b.level <= 1 and b is On { a.x := d  b -> On  a -> Stop  if a.lit { b.level := 0 } }
   when crossing(d) { a.y := -d }
 }
 
