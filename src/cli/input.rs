@@ -77,11 +77,11 @@ struct Folder {
 }
 
 impl Files for Folder {
-    fn read(&mut self, path: &str) -> io::Result<String> {
+    fn read(&mut self, path: &str) -> io::Result<Vec<u8>> {
         let path = self.folder.join(path);
-        let text = fs::read_to_string(&path).map_err(|error| io::Error::new(error.kind(), reason(&error)))?;
+        let bytes = fs::read(&path).map_err(|error| io::Error::new(error.kind(), reason(&error)))?;
         self.inputs.push(path);
-        Ok(text)
+        Ok(bytes)
     }
 }
 

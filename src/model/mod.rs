@@ -74,8 +74,8 @@ pub struct Settings {
 
 /// Reads the files that a model names. Only the command line touches the disk.
 pub trait Files {
-    /// The text of the file at this path, as written in the model, relative to the model file.
-    fn read(&mut self, path: &str) -> std::io::Result<String>;
+    /// The bytes of the file at this path, as written in the model, relative to the model file.
+    fn read(&mut self, path: &str) -> std::io::Result<Vec<u8>>;
 }
 
 /// What a check comes to.

@@ -218,11 +218,16 @@ impl<'a> Context<'a> {
         let file = match opened.get(&name) {
             Some(&file) => file,
             None => match files.read(&name) {
-                Ok(text) => {
-                    let file = self.sources.add(name.clone(), text);
-                    opened.insert(name, file);
-                    file
-                }
+                Ok(bytes) => match table::add_text(self.sources, &name, bytes) {
+                    Ok(file) => {
+                        opened.insert(name, file);
+                        file
+                    }
+                    Err(error) => {
+                        self.report(error);
+                        return None;
+                    }
+                },
                 Err(error) => {
                     self.report(FileError::Unreadable { path: name, why: reason(&error), span: path.span });
                     return None;
@@ -382,8 +387,10 @@ impl<'a> Context<'a> {
                 }
                 Some(rows.count)
             }
-            Err(error) => {
-                self.report(error);
+            Err(errors) => {
+                for error in errors {
+                    self.report(error);
+                }
                 count
             }
         }

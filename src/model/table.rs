@@ -2,7 +2,7 @@
 
 use super::error::FileError;
 use super::types::{Slot, Ty};
-use crate::base::{FileId, Span};
+use crate::base::{FileId, SourceMap, Span};
 
 /// The header line of a data file.
 pub(super) struct Header {
@@ -17,6 +17,12 @@ pub(super) struct Wanted {
     /// Type and unit of the variable.
     pub slot: Slot,
 }
+
+/// How many characters of a wrong cell are shown.
+const SHOWN_MAX: usize = 40;
+
+/// How many problems of one file are told.
+const PROBLEMS_MAX: usize = 5;
 
 /// The rows of a data file, as far as they are needed.
 pub(super) struct Rows {
@@ -37,8 +43,32 @@ fn malformed(file: FileId, error: &csv::Error) -> FileError {
     FileError::Malformed { why: error.to_string(), span: Span::new(file, at, at) }
 }
 
+/// The text of a data file; where it is not UTF-8, the file is added as far as it can be shown.
+pub(super) fn add_text(sources: &mut SourceMap, name: &str, bytes: Vec<u8>) -> Result<FileId, FileError> {
+    match String::from_utf8(bytes) {
+        Ok(text) => Ok(sources.add(name, text)),
+        Err(error) => {
+            let at = error.utf8_error().valid_up_to();
+            let file = sources.add(name, String::from_utf8_lossy(error.as_bytes()));
+            let why = "it is not text in UTF-8".to_string();
+            Err(FileError::Malformed { why, span: Span::new(file, at, at + '\u{fffd}'.len_utf8()) })
+        }
+    }
+}
+
+/// The place of a quote that is never closed.
+fn open_quote(text: &str) -> Option<usize> {
+    let quotes = text.bytes().enumerate().filter(|(_, byte)| *byte == b'"').map(|(at, _)| at);
+    let (count, last) = quotes.fold((0usize, 0), |(count, _), at| (count + 1, at));
+    (count % 2 == 1).then_some(last)
+}
+
 /// Reads the header line.
 pub(super) fn read_header(file: FileId, text: &str) -> Result<Header, FileError> {
+    if let Some(at) = open_quote(text) {
+        let why = "a quote is never closed".to_string();
+        return Err(FileError::Malformed { why, span: Span::new(file, at, at + 1) });
+    }
     let mut record = csv::StringRecord::new();
     let more = reader(text).read_record(&mut record).map_err(|error| malformed(file, &error))?;
     if !more {
@@ -49,55 +79,60 @@ pub(super) fn read_header(file: FileId, text: &str) -> Result<Header, FileError>
     for (number, name) in record.iter().enumerate() {
         let name = name.trim_start_matches('\u{feff}').trim();
         let span = cell_span(file, text, start, number);
-        if !name.is_empty() && columns.iter().any(|(other, _)| other == name) {
-            return Err(FileError::Malformed { why: format!("two columns are called `{name}`"), span });
+        let first = columns.iter().find(|(other, _)| !name.is_empty() && other == name);
+        if let Some(&(_, first)) = first {
+            return Err(FileError::ColumnTwice { name: name.to_string(), span, first });
         }
         columns.push((name.to_string(), span));
     }
     Ok(Header { columns })
 }
 
-/// Reads the wanted columns of the first `most` rows.
+/// Reads the wanted columns of the first `most` rows. All that is wrong, up to a limit.
 pub(super) fn read_rows(
     file: FileId,
     text: &str,
     header: &Header,
     wanted: &[Wanted],
     most: usize,
-) -> Result<Rows, FileError> {
+) -> Result<Rows, Vec<FileError>> {
     let mut reader = reader(text);
     let mut record = csv::StringRecord::new();
-    reader.read_record(&mut record).map_err(|error| malformed(file, &error))?;
+    let mut next = |record: &mut csv::StringRecord| {
+        reader.read_record(record).map_err(|error| vec![malformed(file, &error)])
+    };
+    next(&mut record)?;
+    let mut problems = Vec::new();
     let mut last = record_span(file, text, record_start(&record));
     let mut values = wanted.iter().map(|_| Vec::new()).collect::<Vec<_>>();
     let mut count = 0;
-    while count < most && reader.read_record(&mut record).map_err(|error| malformed(file, &error))? {
+    while count < most && problems.len() < PROBLEMS_MAX && next(&mut record)? {
         let start = record_start(&record);
-        if record.len() > header.columns.len() {
-            let why =
-                format!("a row has {} cells, and the header names {}", record.len(), header.columns.len());
-            return Err(FileError::Malformed {
-                why,
-                span: cell_span(file, text, start, header.columns.len()),
-            });
-        }
-        for (column, wanted) in values.iter_mut().zip(wanted) {
-            let text_of_cell = record.get(wanted.column).map(str::trim).filter(|cell| !cell.is_empty());
-            let value = text_of_cell.and_then(|cell| read_cell(cell, wanted.slot));
-            let Some(value) = value else {
-                return Err(FileError::BadCell {
-                    column: header.columns[wanted.column].0.clone(),
-                    expected: expected(wanted.slot.ty),
-                    found: text_of_cell.map(str::to_string),
-                    span: cell_span(file, text, start, wanted.column),
-                });
+        let (found, named) = (record.len(), header.columns.len());
+        if found != named {
+            let span = match found > named {
+                true => cell_span(file, text, start, named),
+                false => record_span(file, text, start),
             };
-            column.push(value);
+            problems.push(FileError::Ragged { found, named, span });
+        } else {
+            for (column, wanted) in values.iter_mut().zip(wanted) {
+                match read_cell(record.get(wanted.column).unwrap_or("").trim(), wanted.slot) {
+                    Ok(value) => column.push(value),
+                    Err(found) => problems.push(FileError::BadCell {
+                        column: header.columns[wanted.column].0.clone(),
+                        expected: expected(wanted.slot.ty),
+                        found,
+                        span: cell_span(file, text, start, wanted.column),
+                    }),
+                }
+            }
         }
         last = record_span(file, text, start);
         count += 1;
     }
-    Ok(Rows { count, values, last })
+    problems.truncate(PROBLEMS_MAX);
+    if problems.is_empty() { Ok(Rows { count, values, last }) } else { Err(problems) }
 }
 
 fn expected(ty: Ty) -> &'static str {
@@ -108,17 +143,31 @@ fn expected(ty: Ty) -> &'static str {
     }
 }
 
-fn read_cell(cell: &str, slot: Slot) -> Option<f64> {
-    match slot.ty {
+/// The value of a cell, SI; else what is in it, in words.
+fn read_cell(cell: &str, slot: Slot) -> Result<f64, String> {
+    let shown = match cell.char_indices().nth(SHOWN_MAX) {
+        Some((end, _)) => format!("`{}...`", &cell[..end]),
+        None => format!("`{cell}`"),
+    };
+    if cell.is_empty() {
+        return Err("nothing here".to_string());
+    }
+    let number = cell.parse::<f64>();
+    let value = match slot.ty {
         Ty::Bool => match cell {
             "true" | "1" => Some(1.0),
             "false" | "0" => Some(0.0),
             _ => None,
         },
-        Ty::Int => cell.parse::<f64>().ok().filter(|value| value.is_finite() && value.fract() == 0.0),
+        Ty::Int => number.ok().filter(|value| !value.is_finite() || value.fract() == 0.0),
         Ty::Real | Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::Wrong => {
-            cell.parse::<f64>().ok().map(|value| slot.scale().to_si(value)).filter(|value| value.is_finite())
+            number.ok().map(|value| slot.scale().to_si(value))
         }
+    };
+    match value {
+        Some(value) if value.is_finite() => Ok(value),
+        Some(_) => Err(format!("{shown} is not finite")),
+        None => Err(format!("{shown} is not")),
     }
 }
 

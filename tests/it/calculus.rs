@@ -13,8 +13,8 @@ use hyc::syntax::parse;
 struct Beside(PathBuf);
 
 impl Files for Beside {
-    fn read(&mut self, path: &str) -> std::io::Result<String> {
-        std::fs::read_to_string(self.0.join(path))
+    fn read(&mut self, path: &str) -> std::io::Result<Vec<u8>> {
+        std::fs::read(self.0.join(path))
     }
 }
 

@@ -28,7 +28,7 @@ fn fenced(text: &str, mark: &str) -> Vec<String> {
 struct NoFiles;
 
 impl Files for NoFiles {
-    fn read(&mut self, _: &str) -> io::Result<String> {
+    fn read(&mut self, _: &str) -> io::Result<Vec<u8>> {
         Err(io::ErrorKind::NotFound.into())
     }
 }

@@ -71,10 +71,10 @@ fn example(entry: &Explanation) -> Option<Example> {
 struct Shelf<'a>(&'a [(String, String)]);
 
 impl Files for Shelf<'_> {
-    fn read(&mut self, path: &str) -> io::Result<String> {
+    fn read(&mut self, path: &str) -> io::Result<Vec<u8>> {
         let found = self.0.iter().find(|(name, _)| name == path);
         found
-            .map(|(_, text)| text.clone())
+            .map(|(_, text)| text.clone().into_bytes())
             .ok_or_else(|| io::Error::new(io::ErrorKind::NotFound, "no such file"))
     }
 }

@@ -275,8 +275,8 @@ impl Case {
 struct Data;
 
 impl Files for Data {
-    fn read(&mut self, path: &str) -> io::Result<String> {
-        std::fs::read_to_string(format!("{}/models/{path}", env!("CARGO_MANIFEST_DIR")))
+    fn read(&mut self, path: &str) -> io::Result<Vec<u8>> {
+        std::fs::read(format!("{}/models/{path}", env!("CARGO_MANIFEST_DIR")))
     }
 }
 

@@ -12,8 +12,8 @@ use hyc::{calculus, model, syntax};
 struct Beside(PathBuf);
 
 impl Files for Beside {
-    fn read(&mut self, path: &str) -> std::io::Result<String> {
-        fs::read_to_string(self.0.join(path))
+    fn read(&mut self, path: &str) -> std::io::Result<Vec<u8>> {
+        fs::read(self.0.join(path))
     }
 }
 

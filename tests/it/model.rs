@@ -11,8 +11,8 @@ use hyc::syntax::parse;
 struct Beside(PathBuf);
 
 impl Files for Beside {
-    fn read(&mut self, path: &str) -> std::io::Result<String> {
-        std::fs::read_to_string(self.0.join(path))
+    fn read(&mut self, path: &str) -> std::io::Result<Vec<u8>> {
+        std::fs::read(self.0.join(path))
     }
 }
 
@@ -122,8 +122,8 @@ fn a_hundred_thousand_agents_refer_to_each_other() {
 struct Only(String);
 
 impl Files for Only {
-    fn read(&mut self, _path: &str) -> std::io::Result<String> {
-        Ok(self.0.clone())
+    fn read(&mut self, _path: &str) -> std::io::Result<Vec<u8>> {
+        Ok(self.0.clone().into_bytes())
     }
 }
 

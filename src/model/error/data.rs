@@ -165,8 +165,12 @@ pub(in crate::model) enum FileError {
     UnknownColumn { name: String, agent: String, span: Span, similar: Option<String>, used: Span },
     /// Fewer rows than agents.
     TooFewRows { needed: usize, found: usize, span: Span, used: Span },
-    /// A cell that is empty, missing, or no value of its variable's type.
-    BadCell { column: String, expected: &'static str, found: Option<String>, span: Span },
+    /// A cell that is empty, or no value of its variable's type; what is in it, in words.
+    BadCell { column: String, expected: &'static str, found: String, span: Span },
+    /// Two columns of one name.
+    ColumnTwice { name: String, span: Span, first: Span },
+    /// A row with more or fewer cells than the header line has names.
+    Ragged { found: usize, named: usize, span: Span },
 }
 
 impl From<FileError> for Diagnostic {
@@ -182,14 +186,29 @@ impl From<FileError> for Diagnostic {
                     .label(span, "here")
             }
             FileError::UnknownColumn { name, agent, span, similar, used } => {
-                let unknown =
-                    Diagnostic::error("HY0274", format!("agent `{agent}` has no place for column `{name}`"))
-                        .label(span, "not a parameter, a state or a discrete variable")
-                        .label(used, "the data is used here");
+                let title = match name.as_str() {
+                    "" => "a column has no name".to_string(),
+                    name => format!("agent `{agent}` has no place for column `{name}`"),
+                };
+                let unknown = Diagnostic::error("HY0274", title)
+                    .label(span, "not a parameter, a state or a discrete variable")
+                    .label(used, "the data is used here");
                 match similar {
                     Some(similar) => unknown.help(format!("did you mean `{similar}`?")),
                     None => unknown.help(format!("a column that begins with `_` is passed over: `_{name}`")),
                 }
+            }
+            FileError::ColumnTwice { name, span, first } => {
+                Diagnostic::error("HY0284", format!("two columns are called `{name}`"))
+                    .label(span, "the second one")
+                    .label(first, "the first one")
+                    .help(format!("a column that begins with `_` is passed over: `_{name}`"))
+            }
+            FileError::Ragged { found, named, span } => {
+                let cells = if found == 1 { "1 cell".to_string() } else { format!("{found} cells") };
+                Diagnostic::error("HY0285", format!("a row has {cells}, and the header line names {named}"))
+                    .label(span, if found > named { "more than the header names" } else { "too few" })
+                    .help("write one cell for each column; numbers have a point, not a comma")
             }
             FileError::TooFewRows { needed, found, span, used } => Diagnostic::error(
                 "HY0275",
@@ -199,7 +218,6 @@ impl From<FileError> for Diagnostic {
             .label(span, "the last row")
             .help("empty brackets make one agent for each row: `Car[] from csv(...)`"),
             FileError::BadCell { column, expected, found, span } => {
-                let found = found.map_or("nothing here".to_string(), |text| format!("`{text}` is not"));
                 Diagnostic::error("HY0276", format!("column `{column}` needs {expected} in every row"))
                     .label(span, found)
             }

@@ -169,7 +169,7 @@ fn engine(model: &Model) -> Story {
 struct NoFiles;
 
 impl Files for NoFiles {
-    fn read(&mut self, path: &str) -> io::Result<String> {
+    fn read(&mut self, path: &str) -> io::Result<Vec<u8>> {
         panic!("nobody reads {path}")
     }
 }

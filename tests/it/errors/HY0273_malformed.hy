@@ -1,4 +1,4 @@
 agent Car(v: real) { }
-system { a = Car[3] from csv("two_columns.csv")
+system { a = Car[3] from csv("latin1.csv")
          b = Car[3] from csv("empty.csv")
-         c = Car[] from csv("long_row.csv") }
+         c = Car[] from csv("quote.csv") }

@@ -1,2 +1,3 @@
 agent Car(speed: real) { state x = 0 flow { x' = speed } }
-system { cars = Car[] from csv("columns.csv") }
+agent Van(v: real) { }
+system { cars = Car[] from csv("columns.csv")  vans = Van[] from csv("unnamed.csv") }
