@@ -6,8 +6,10 @@
 pub mod arena;
 pub mod source;
 pub mod diagnostic;
+pub mod number;
 pub mod render;
 
 pub use arena::{Arena, Idx};
 pub use diagnostic::{Diagnostic, Label, Severity};
+pub use number::{number_text, write_number};
 pub use source::{FileId, SourceMap, Span};

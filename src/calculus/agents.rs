@@ -96,7 +96,8 @@ fn claim(
     };
     let name = format!("{name} {word}");
     let violation = guard::guard(draft, &mut scope, claim.condition, Sense::Negative, &name)?;
-    Ok(ClaimSystem { kind, frame: scope.frame, violation, message: claim.message.clone(), span: claim.span })
+    let (frame, message) = (scope.into_frame(), claim.message.clone());
+    Ok(ClaimSystem { kind, frame, violation, message, span: claim.span })
 }
 
 /// Entry or exit actions, which have a frame of their own.
@@ -104,7 +105,7 @@ fn own_actions(draft: &mut Draft, ty: TypeId, steps: &[Action], name: &str) -> A
     let mut scope = Scope::of_self(ty);
     let list = actions::actions(draft, &mut scope, steps, name);
     let list = draft.keep(list).unwrap_or_default();
-    ActionList { frame: scope.frame, ..list }
+    ActionList { frame: scope.into_frame(), ..list }
 }
 
 /// Transitions of agents.
@@ -156,7 +157,7 @@ fn transition(
     let mut actions = actions::actions(draft, &mut scope, &declared.actions, label)?;
     let witnesses =
         declared.witnesses.iter().filter_map(|binder| scope.witnesses.get(binder).copied()).collect();
-    let frame = scope.frame;
+    let frame = scope.into_frame();
     actions.frame = frame.clone();
     Ok(TransitionSystem {
         label: label.clone(),
@@ -233,5 +234,5 @@ fn recorded(draft: &mut Draft, ty: TypeId, declared: &Let, name: &str) -> Result
         LetValue::Number(number(draft, &mut scope, declared.value, name)?)
     };
     let column = Column { name: declared.name.clone(), scale: declared.scale, boolean };
-    Ok(LetSystem { column, mode: declared.mode.index(), frame: scope.frame, value })
+    Ok(LetSystem { column, mode: declared.mode.index(), frame: scope.into_frame(), value })
 }

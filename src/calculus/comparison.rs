@@ -4,7 +4,7 @@
 //! regular where those of the distance are not. An `if` inside becomes a choice between two comparisons: see `jumps`.
 
 use crate::base::Span;
-use crate::calculus::condition::{Cond, DEPTH_MAX, Lowering, PARTS_MAX, Sense};
+use crate::calculus::condition::{Cond, DEPTH_MAX, Lowering, PARTS_MAX, Sense, Written};
 use crate::calculus::error::Error;
 use crate::calculus::graph::{Node, NodeId};
 use crate::calculus::jumps;
@@ -164,7 +164,7 @@ impl Lowering<'_, '_> {
 
     pub fn atom(&mut self, relation: Relation, g: NodeId, span: Span) -> Result<Cond, Error> {
         self.count()?;
-        Ok(Cond::Atom(relation, g, span))
+        Ok(Cond::Atom(relation, g, Written { span, sides: self.sides }))
     }
 
     fn count(&mut self) -> Result<(), Error> {

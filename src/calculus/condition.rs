@@ -12,7 +12,7 @@ use crate::calculus::error::Error;
 use crate::calculus::frame::{AgentRef, EnvId, Scope, Value};
 use crate::calculus::graph::NodeId;
 use crate::calculus::jumps;
-use crate::calculus::system::Relation;
+use crate::calculus::system::{Relation, Sides};
 use crate::math::Op;
 use crate::model::ir::{ExprId, ExprKind, Quantifier, Type};
 
@@ -28,8 +28,8 @@ pub enum Cond {
     Constant(bool),
     /// Not 0; changes at events only.
     Discrete(NodeId),
-    /// `g relation 0`.
-    Atom(Relation, NodeId, Span),
+    /// `g relation 0`, and how that is written.
+    Atom(Relation, NodeId, Written),
     /// All.
     And(Vec<Cond>),
     /// Any.
@@ -38,6 +38,15 @@ pub enum Cond {
     Quantified(Quantifier, Range, Box<Cond>),
     /// `rising(c)`.
     Rising(Box<Cond>),
+}
+
+/// The text that an atom comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Written {
+    /// Where it stands.
+    pub span: Span,
+    /// See [`Atom::sides`](crate::calculus::system::Atom).
+    pub sides: Option<Sides>,
 }
 
 /// What a quantifier ranges over.
@@ -72,7 +81,11 @@ impl Sense {
 /// Lowers a boolean expression.
 pub fn lower(draft: &mut Draft, scope: &mut Scope, expr: ExprId, sense: Sense) -> Result<Cond, Error> {
     let span = draft.model.exprs[expr].span;
-    Lowering { draft, scope, span, parts: 0, depth: 0, quantifiers: 0 }.lower(Scope::TOP, expr, sense)
+    Lowering { draft, scope, span, sides: None, parts: 0, depth: 0, quantifiers: 0 }.lower(
+        Scope::TOP,
+        expr,
+        sense,
+    )
 }
 
 pub(super) struct Lowering<'d, 'm> {
@@ -80,6 +93,8 @@ pub(super) struct Lowering<'d, 'm> {
     pub scope: &'d mut Scope,
     /// Where the whole condition stands.
     pub span: Span,
+    /// The comparison at hand, as it is written.
+    pub sides: Option<Sides>,
     pub parts: usize,
     pub depth: usize,
     quantifiers: usize,
@@ -279,6 +294,7 @@ impl Lowering<'_, '_> {
         not_negated("crossing", sense, span)?;
         let g = self.number(env, e)?;
         let g = jumps::as_choices(&mut self.draft.graph, g);
+        self.sides = None;
         self.atom(Relation::Crossing, g, span)
     }
 
@@ -302,7 +318,9 @@ impl Lowering<'_, '_> {
                 self.either(holds, fails, otherwise, then)
             });
         }
+        let spans = [a, b].map(|side| self.draft.model.exprs[side].span);
         let (a, b) = (self.number(env, a)?, self.number(env, b)?);
+        self.sides = Some(sides(op, a, b, spans[1] < spans[0]));
         if equality {
             return self.equality((op == Op::Eq) == (sense == Sense::Positive), a, b, span);
         }
@@ -313,6 +331,20 @@ impl Lowering<'_, '_> {
             (_, Sense::Negative) => self.less(Relation::NonPositive, b, a, span),
         }
     }
+}
+
+/// `a op b`; the source says `b > a` for `a < b` if the two are exchanged.
+fn sides(op: Op, a: NodeId, b: NodeId, exchanged: bool) -> Sides {
+    let sign = match (op, exchanged) {
+        (Op::Le, false) => "<=",
+        (Op::Le, true) => ">=",
+        (Op::Eq, _) => "==",
+        (Op::Ne, _) => "!=",
+        (_, false) => "<",
+        (_, true) => ">",
+    };
+    let (left, right) = if exchanged { (b, a) } else { (a, b) };
+    Sides { left, sign, right }
 }
 
 /// An event holds at an instant; its negation would hold nearly always.

@@ -21,7 +21,7 @@ pub fn flow(draft: &mut Draft, ty: TypeId, leaf: ModeId, name: &str) -> Result<F
     for &expr in &exprs {
         plain.push(build::number(draft, &mut scope, Scope::TOP, expr)?);
     }
-    let (rates, kinks) = kinks::lock(draft, &scope, ty.index(), &plain, name);
+    let (rates, kinks) = kinks::lock(draft, &mut scope, ty.index(), &plain, name);
     let accelerations: Vec<NodeId> =
         rates.iter().map(|&rate| derive::along_flow(&mut draft.graph, rate)).collect();
     let (jacobian, values) = jacobian(&mut draft.graph, &rates);
@@ -34,7 +34,7 @@ pub fn flow(draft: &mut Draft, ty: TypeId, leaf: ModeId, name: &str) -> Result<F
         kinks,
         couples,
         spans,
-        frame: scope.frame,
+        frame: scope.into_frame(),
     })
 }
 

@@ -88,6 +88,13 @@ impl Scope {
         scope
     }
 
+    /// The frame, when all that reads it has been lowered.
+    pub fn into_frame(self) -> Frame {
+        let mut origins: Vec<(NodeId, Span)> = self.spans.into_iter().collect();
+        origins.sort_unstable();
+        Frame { origins: origins.into(), ..self.frame }
+    }
+
     /// The scope of an agent's own text.
     pub fn of_self(ty: TypeId) -> Self {
         Self::new(vec![("self".to_owned(), ty)])

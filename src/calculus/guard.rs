@@ -1,7 +1,6 @@
 //! From a condition over nodes to a guard: atoms numbered, each with its rates, all as functions.
 
-use crate::base::Span;
-use crate::calculus::condition::{self, Cond, Sense};
+use crate::calculus::condition::{self, Cond, Sense, Written};
 use crate::calculus::derive;
 use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
@@ -49,7 +48,7 @@ impl Numbering<'_, '_> {
                 let name = self.name;
                 Condition::Discrete(self.draft.function(|| format!("{name} test"), vec![node]))
             }
-            Cond::Atom(relation, g, span) => Condition::Atom(self.atom(relation, g, span)),
+            Cond::Atom(relation, g, written) => Condition::Atom(self.atom(relation, g, written)),
             Cond::And(terms) => Condition::And(terms.into_iter().map(|term| self.condition(term)).collect()),
             Cond::Or(terms) => Condition::Or(terms.into_iter().map(|term| self.condition(term)).collect()),
             Cond::Quantified(kind, range, body) => {
@@ -68,12 +67,12 @@ impl Numbering<'_, '_> {
         }
     }
 
-    fn atom(&mut self, relation: Relation, g: NodeId, span: Span) -> usize {
+    fn atom(&mut self, relation: Relation, g: NodeId, written: Written) -> usize {
         if let Some(k) = self.nodes.iter().position(|&known| known == (relation, g)) {
             return k;
         }
         let name = format!("{} {}", self.name, self.atoms.len() + 1);
-        let atom = atom(self.draft, self.frame, relation, g, span, &name);
+        let atom = atom(self.draft, self.frame, relation, g, written, &name);
         self.atoms.push(atom);
         self.nodes.push((relation, g));
         self.atoms.len() - 1
@@ -81,7 +80,14 @@ impl Numbering<'_, '_> {
 }
 
 /// A comparison with its functions.
-pub fn atom(draft: &mut Draft, frame: &Frame, relation: Relation, g: NodeId, span: Span, name: &str) -> Atom {
+pub fn atom(
+    draft: &mut Draft,
+    frame: &Frame,
+    relation: Relation,
+    g: NodeId,
+    written: Written,
+    name: &str,
+) -> Atom {
     let [first, second] = derive::rates(&mut draft.graph, g);
     let value = draft.function(|| name.to_owned(), vec![g]);
     let rates = draft.function(|| format!("{name} rates"), vec![g, first, second]);
@@ -92,7 +98,8 @@ pub fn atom(draft: &mut Draft, frame: &Frame, relation: Relation, g: NodeId, spa
     let smooth = !reach.iter().any(|&id| jumps(&draft.graph, id));
     let names = Names { types: &draft.types, frame };
     let text = print::short_comparison(&draft.graph, names, relation, g);
-    Atom { relation, value, rates, smooth, slots, text, span }
+    let Written { span, sides } = written;
+    Atom { relation, value, rates, smooth, slots, text, sides, span }
 }
 
 /// Whether the value of a node can jump while its operands move continuously.

@@ -10,6 +10,7 @@
 use rustc_hash::FxHashMap;
 
 use crate::base::Span;
+use crate::calculus::condition::Written;
 use crate::calculus::derive::negative;
 use crate::calculus::draft::Draft;
 use crate::calculus::frame::Scope;
@@ -18,10 +19,10 @@ use crate::calculus::guard;
 use crate::calculus::system::{Kink, KinkKind, Relation};
 use crate::math::Op;
 
-/// The locked forms of `flow` (the rates of self, whose type is `ty`), and the kinks.
+/// The locked forms of `flow` (the rates of self, whose type is `ty`), and the kinks. What is locked stands where it stood.
 pub fn lock(
     draft: &mut Draft,
-    scope: &Scope,
+    scope: &mut Scope,
     ty: usize,
     flow: &[NodeId],
     name: &str,
@@ -46,8 +47,13 @@ pub fn lock(
         };
         locked.insert(id, new);
     }
-    let smooth = flow.iter().map(|id| locked[id]).collect();
-    (smooth, pass.kinks)
+    let (smooth, kinks) = (flow.iter().map(|id| locked[id]).collect(), pass.kinks);
+    let moved = locked.into_iter().filter_map(|(old, new)| scope.spans.get(&old).map(|&span| (new, span)));
+    for (new, span) in moved.collect::<Vec<_>>() {
+        let first = scope.spans.entry(new).or_insert(span);
+        *first = span.min(*first);
+    }
+    (smooth, kinks)
 }
 
 struct Locking<'d, 'm> {
@@ -282,7 +288,8 @@ impl Locking<'_, '_> {
 
     fn atom(&mut self, relation: Relation, g: NodeId) -> crate::calculus::system::Atom {
         let name = format!("{} kink {}", self.name, self.kinks.len() + 1);
-        guard::atom(self.draft, &self.scope.frame, relation, g, self.span, &name)
+        let written = Written { span: self.span, sides: None };
+        guard::atom(self.draft, &self.scope.frame, relation, g, written, &name)
     }
 
     fn add(&mut self, key: LockKey, kind: KinkKind, initial: NodeId) -> NodeId {

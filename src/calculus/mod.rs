@@ -12,7 +12,7 @@ pub mod system;
 mod simplify;
 pub mod evaluate;
 mod derive;
-mod print;
+pub mod print;
 mod error;
 mod draft;
 mod frame;

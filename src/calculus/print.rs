@@ -286,7 +286,15 @@ impl<'a> Sheet<'a> {
 
 /// The comparison `g relation 0` on one line, with `...` for what is too large.
 pub fn short_comparison(graph: &Graph, names: Names, relation: Relation, g: NodeId) -> String {
-    let mut text = Sheet::new(graph, names, &[g]).comparison(relation, g);
+    without_names(Sheet::new(graph, names, &[g]).comparison(relation, g))
+}
+
+/// An expression on one line, with `...` for what is too large in it.
+pub fn short(graph: &Graph, names: Names, id: NodeId) -> String {
+    without_names(Sheet::new(graph, names, &[id]).definition(id))
+}
+
+fn without_names(mut text: String) -> String {
     while let Some(at) = text.find('@') {
         let end = text[at + 1..].find(|c: char| !c.is_ascii_digit()).map_or(text.len(), |k| at + 1 + k);
         text.replace_range(at..end, "...");

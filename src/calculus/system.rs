@@ -8,6 +8,8 @@
 //! first participant, slot 1 the second), then the agents bound by quantifiers, then those reached by links.
 //! **Columns.** An agent is two rows of numbers: its states, and its auxiliary columns ([`Layout`]).
 
+use std::sync::Arc;
+
 use crate::base::{Arena, Idx, Span};
 use crate::calculus::graph::{Graph, NodeId};
 use crate::math::Scale;
@@ -47,6 +49,16 @@ pub struct Function {
 pub struct Frame {
     /// Slot 0 first; a link's slot stands after the slot that it starts from.
     pub slots: Vec<Slot>,
+    /// Where in the source the nodes of its functions stand, by node, rising; for messages.
+    pub origins: Arc<[(NodeId, Span)]>,
+}
+
+impl Frame {
+    /// Where a node was first met in the source.
+    pub fn origin(&self, node: NodeId) -> Option<Span> {
+        let found = self.origins.binary_search_by_key(&node, |&(node, _)| node);
+        found.ok().map(|k| self.origins[k].1)
+    }
 }
 
 /// How the agent in a slot is found.
@@ -333,8 +345,21 @@ pub struct Atom {
     pub slots: Vec<usize>,
     /// The comparison in the words of the source.
     pub text: String,
+    /// What the source compares with what; none where it does not compare (`crossing(e)`, a kink).
+    pub sides: Option<Sides>,
     /// Where it stands.
     pub span: Span,
+}
+
+/// A comparison as it is written; an atom may be of its negation, of the squares, or of a branch of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Sides {
+    /// What stands on the left.
+    pub left: NodeId,
+    /// `<=`, `>`, ...
+    pub sign: &'static str,
+    /// What stands on the right.
+    pub right: NodeId,
 }
 
 /// How an atom compares g with zero.

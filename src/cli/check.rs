@@ -9,10 +9,11 @@ use super::input::{load, name_of, settings_with};
 use super::terminal::{complain, say, say_aside, tell};
 use super::warnings::{Levels, count};
 use super::{Exit, Refused, sarif};
-use crate::base::{Diagnostic, SourceMap, Span};
+use crate::base::{Diagnostic, SourceMap};
 use crate::calculus;
 use crate::calculus::system::System;
 use crate::model::Settings;
+use crate::output::diagnostic_json;
 
 /// Checks each model; the worst of them decides the exit code.
 pub(super) fn check(arguments: &CheckArguments) -> Result<Exit, Refused> {
@@ -120,34 +121,5 @@ fn model_json(path: &Path, checked: &CheckedModel) -> Value {
         "interactions": pairs
             .map(|(label, symmetric)| json!({ "transition": label, "unordered": symmetric }))
             .collect::<Vec<_>>(),
-    })
-}
-
-fn diagnostic_json(sources: &SourceMap, diagnostic: &Diagnostic) -> Value {
-    let labels = diagnostic.labels.iter().map(|label| {
-        let mut place = place_json(sources, label.span);
-        place["text"] = json!(label.text);
-        place
-    });
-    json!({
-        "severity": diagnostic.severity.word(),
-        "code": diagnostic.code,
-        "title": diagnostic.title,
-        "labels": labels.collect::<Vec<_>>(),
-        "notes": diagnostic.notes,
-        "help": diagnostic.help,
-    })
-}
-
-/// Lines and columns count from 1, columns in characters; the end is one past the last character.
-fn place_json(sources: &SourceMap, span: Span) -> Value {
-    let (line, column) = sources.line_column(span);
-    let (end_line, end_column) = sources.line_column(Span { start: span.end, ..span });
-    json!({
-        "file": sources.file(span.file).name,
-        "line": line,
-        "column": column,
-        "end_line": end_line,
-        "end_column": end_column,
     })
 }

@@ -1,8 +1,8 @@
 //! False asserts as diagnostics.
 
-use crate::base::Diagnostic;
-use crate::output::{Cast, write_number};
-use crate::runtime::observe::FalseAssert;
+use crate::base::{Diagnostic, number_text};
+use crate::output::Cast;
+use crate::runtime::observe::{Compared, FalseAssert};
 
 /// One warning for each assert that was false, in the order in which they first were.
 pub(super) fn diagnostics(claims: &[FalseAssert], cast: &Cast) -> Vec<Diagnostic> {
@@ -10,15 +10,16 @@ pub(super) fn diagnostics(claims: &[FalseAssert], cast: &Cast) -> Vec<Diagnostic
 }
 
 fn diagnostic(claim: &FalseAssert, cast: &Cast) -> Diagnostic {
-    let mut time = String::new();
-    write_number(&mut time, claim.time);
+    let time = number_text(claim.time);
     let title = match &claim.message {
         Some(message) => format!("an assert was false: {message}"),
         None => "an assert was false".into(),
     };
     let agent = cast.agents.get(claim.agent).map_or("an agent", String::as_str);
-    let first = format!("first at t = {time} s for `{agent}`");
-    let diagnostic = Diagnostic::warning("HY0590", title).label(claim.span, first);
+    let mode = if claim.mode.is_empty() { String::new() } else { format!(" in mode {}", claim.mode) };
+    let first = format!("first at t = {time} s for `{agent}`{mode}");
+    let mut diagnostic = Diagnostic::warning("HY0590", title).label(claim.span, first);
+    diagnostic.notes.extend(claim.compared.iter().map(Compared::numbers));
     match claim.count {
         0 | 1 => diagnostic,
         count => diagnostic.note(format!("it became false {count} times, over all agents")),

@@ -67,6 +67,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
         absolute: program.run.absolute.unwrap_or(program.run.tolerance),
         seed: program.run.seed,
         until: program.run.until,
+        sources: &sources,
         cast: &cast,
         outcome: &outcome,
         functions: program.cost.functions,

@@ -12,6 +12,7 @@ mod routine;
 mod jit;
 pub mod kernel;
 pub mod program;
+pub mod trace;
 
 use std::time::Instant;
 
@@ -68,8 +69,8 @@ fn link(system: System, tapes: Vec<Tape>, code: Code, cost: Cost) -> Program {
         steps[task.ty][task.mode] = Some(StepKernel::new(&tapes[task.function], code));
     }
     let kernels = tapes.into_iter().zip(code.kernels).map(|(tape, code)| Kernel::new(tape, code)).collect();
-    let System { types, interactions, population, run, .. } = system;
-    Program { types, interactions, population, run, kernels, steps, cost }
+    let System { graph, functions, types, interactions, population, run } = system;
+    Program { graph, functions, types, interactions, population, run, kernels, steps, cost }
 }
 
 /// The tapes of all functions, as text (`hyc show --stage tape`).

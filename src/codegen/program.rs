@@ -1,5 +1,8 @@
 //! The product of this floor: a program that runs. The structure of the system with a kernel for every function of it.
 
+use crate::base::Arena;
+use crate::calculus::graph::Graph;
+use crate::calculus::system::Function;
 pub use crate::calculus::system::FunctionId;
 pub use crate::calculus::system::{
     ActionList, ActionStep, AgentSystem, Atom, ClaimKind, ClaimSystem, Column, Condition, Flow, Frame, Guard,
@@ -11,6 +14,10 @@ use crate::codegen::kernel::{Kernel, StepKernel};
 /// A model, compiled.
 #[derive(Debug)]
 pub struct Program {
+    /// The expressions that kernels compute, for messages.
+    pub graph: Graph,
+    /// What each kernel computes: same number.
+    pub functions: Arena<Function>,
     /// Agent types, numbered as in the model.
     pub types: Vec<AgentSystem>,
     /// Interactions, numbered as in the model.

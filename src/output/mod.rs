@@ -5,7 +5,7 @@
 //! ([`statistics`], [`summary`]). Promised: what has been told is in the files when the run ends, however it ends, and
 //! the same run gives the same bytes. It opens no file: it is handed places to write to.
 
-mod number;
+mod diagnostic_json;
 mod table;
 mod cast;
 mod event_log;
@@ -20,7 +20,7 @@ mod summary;
 mod tests;
 
 pub use cast::{Cast, TypeColumns};
-pub use number::write_number;
+pub use diagnostic_json::diagnostic_json;
 pub use report::Report;
 pub use statistics::statistics;
 pub use summary::summary;

@@ -1,6 +1,7 @@
 //! What is known about a run when it is over: the settings it had, how it ended, what it took.
 
 use super::cast::Cast;
+use crate::base::SourceMap;
 use crate::runtime::observe::Outcome;
 
 /// A finished run.
@@ -25,6 +26,8 @@ pub struct Report<'a> {
     pub seed: u64,
     /// The end that was asked for, s; none: only a `stop` ends the run.
     pub until: Option<f64>,
+    /// The texts that diagnostics point into.
+    pub sources: &'a SourceMap,
     /// Names of the agents.
     pub cast: &'a Cast,
     /// How it ended, and counts.

@@ -2,6 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
+use super::diagnostic_json::diagnostic_json;
 use super::report::Report;
 use crate::runtime::observe::{End, FalseAssert};
 
@@ -56,7 +57,10 @@ fn end(end: &End, report: &Report<'_>) -> Value {
         }
         End::Interrupted => json!({ "kind": "interrupted" }),
         End::Error(diagnostic) => {
-            json!({ "kind": "error", "code": diagnostic.code, "message": diagnostic.title })
+            let mut whole = diagnostic_json(report.sources, diagnostic);
+            whole["kind"] = json!("error");
+            whole["message"] = json!(diagnostic.title);
+            whole
         }
         End::Output(error) => json!({ "kind": "output", "message": error.to_string() }),
     }

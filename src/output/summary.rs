@@ -1,8 +1,8 @@
 //! The few lines that a person reads when a run is over.
 
+use crate::base::write_number;
 use std::fmt::Write;
 
-use super::number::write_number;
 use super::report::Report;
 use crate::runtime::observe::End;
 

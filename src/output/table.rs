@@ -1,8 +1,7 @@
 //! One CSV table, written row by row: comma, a header line, LF, quotes only where they are needed.
 
+use crate::base::write_number;
 use std::io::{self, BufWriter, Write};
-
-use super::number::write_number;
 
 /// A place to write to, with the name that messages give it.
 pub struct Sink {

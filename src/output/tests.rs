@@ -3,9 +3,10 @@
 use std::cell::RefCell;
 use std::io::{self, Write};
 use std::rc::Rc;
+use std::sync::LazyLock;
 
 use super::*;
-use crate::base::Diagnostic;
+use crate::base::{Diagnostic, SourceMap, write_number};
 use crate::runtime::observe::{
     Cell, End, Event, FalseAssert, Last, Observer, Outcome, Row, Stats, TypeStats,
 };
@@ -174,14 +175,20 @@ fn outcome(end: End) -> Outcome {
             message: Some("rear-end collision".into()),
             time: 3.5,
             agent: 1,
+            mode: "Drive".into(),
+            compared: Vec::new(),
             count: 2,
         }],
         warnings: Vec::new(),
     }
 }
 
+/// No text has been read.
+static NO_SOURCES: LazyLock<SourceMap> = LazyLock::new(SourceMap::default);
+
 fn report<'a>(cast: &'a Cast, outcome: &'a Outcome, files: &'a [String]) -> Report<'a> {
     Report {
+        sources: &NO_SOURCES,
         model: "models/cars.hy",
         algorithm: "masim",
         engine: "plain",

@@ -3,7 +3,8 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::base::Span;
-use crate::codegen::program::{ActionList, ActionStep, Layout, Target, TransitionSystem};
+use crate::codegen::program::{ActionList, ActionStep, Frame, FunctionId, Layout, Target, TransitionSystem};
+use crate::codegen::trace::{Blame, Point};
 use crate::runtime::advance::cut;
 use crate::runtime::engine::{Engine, StopRequest};
 use crate::runtime::failure::{Failure, Reason};
@@ -131,10 +132,11 @@ impl Engine<'_, '_> {
         for step in steps {
             match step {
                 ActionStep::Assign { slot, target, value, span } => {
-                    let value = truth::value(&self.agents, &mut self.present, *value, slots);
-                    let write = Write { agent: slots[*slot], target: *target, value, span: *span };
-                    if !value.is_finite() {
-                        return Err(self.action_not_finite(&write).into());
+                    let number = truth::value(&self.agents, &mut self.present, *value, slots);
+                    let write = Write { agent: slots[*slot], target: *target, value: number, span: *span };
+                    if !number.is_finite() {
+                        let blame = self.blame(*value, &list.frame, slots);
+                        return Err(self.action_not_finite(&write, blame).into());
                     }
                     effect.writes.push(write);
                 }
@@ -158,7 +160,13 @@ impl Engine<'_, '_> {
         Ok(())
     }
 
-    fn action_not_finite(&mut self, write: &Write) -> Reason {
+    /// What makes the single output of a function not finite, on the rows of the present instant.
+    pub fn blame(&self, function: FunctionId, frame: &Frame, slots: &Slots) -> Option<Blame> {
+        let views = self.present.views(&self.agents, slots);
+        self.program.blame(function, 0, &Point { frame, slots: &views, time: self.present.time })
+    }
+
+    fn action_not_finite(&mut self, write: &Write, blame: Option<Blame>) -> Reason {
         let system = &self.program.types[self.agents.agents[write.agent].ty];
         let variable = match write.target {
             Target::State(k) => system.states[k].name.clone(),
@@ -169,6 +177,7 @@ impl Engine<'_, '_> {
             place: self.place(write.agent),
             variable,
             value: write.value,
+            blame,
             span: write.span,
         }
     }

@@ -5,8 +5,9 @@
 //! advanced, so that an event before the kink can still undo it.
 
 use crate::codegen::program::{Atom, Kink, KinkKind, Relation};
+use crate::codegen::trace::Blame;
 use crate::runtime::detect::{AtomCurve, CurveRows};
-use crate::runtime::flow::GroupFlow;
+use crate::runtime::flow::{GroupFlow, Witness};
 use crate::runtime::groups::{Group, KinkHit};
 use crate::runtime::limits::Limits;
 use crate::runtime::population::{Agents, Slots};
@@ -43,7 +44,7 @@ pub enum Advance {
 }
 
 /// Why no step is possible.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Obstacle {
     /// The flow is not a finite number at the clock or just after it.
     NonFinite {
@@ -51,6 +52,8 @@ pub enum Obstacle {
         agent: usize,
         /// Which state.
         state: usize,
+        /// What made it so, and when, s.
+        made: Option<(f64, Blame)>,
     },
     /// The step needed for the accuracy is below the resolution of time.
     Underflow {
@@ -170,7 +173,8 @@ impl Stepper {
                     hits.clear();
                     first = time;
                 }
-                hits.push(KinkHit { agent, kink: number, lock });
+                let before = agents.agents[agent].aux[kink.lock];
+                hits.push(KinkHit { agent, kink: number, before, lock });
             }
         }
         if hits.is_empty() {
@@ -186,30 +190,49 @@ impl Stepper {
         Advance::Turned(hits)
     }
 
-    /// The member and state at which a step fails: the first that is not finite, or the one with the largest error.
-    fn culprit(&self, agents: &Agents<'_>, group: &Group, stuck: Stuck) -> Obstacle {
-        let trial = &self.integrator.trial;
-        let n = self.x.len();
-        let share = |i: usize| {
-            trial.error[i].abs() / (self.accuracy.absolute + self.accuracy.tolerance * self.x[i].abs())
-        };
-        let worst = match stuck {
-            Stuck::NonFinite => (0..n).find(|&i| !(trial.x_new[i].is_finite() && trial.rates[i].is_finite())),
-            Stuck::Underflow => (0..n).max_by(|&i, &j| share(i).total_cmp(&share(j))),
-        };
-        let mut state = worst.unwrap_or(0);
-        for &agent in &group.members {
-            let n_states = agents.agents[agent].states.len();
-            if state < n_states {
-                return match stuck {
-                    Stuck::NonFinite => Obstacle::NonFinite { agent, state },
-                    Stuck::Underflow => Obstacle::Underflow { agent, state },
-                };
+    /// The member and state at which a step fails: the one whose rate is not finite first, or the one with the largest
+    /// error.
+    fn culprit(&mut self, agents: &Agents<'_>, group: &Group, stuck: Stuck) -> Obstacle {
+        match stuck {
+            Stuck::NonFinite => self.undefined(agents, group),
+            Stuck::Underflow => {
+                let error = &self.integrator.trial.error;
+                let scale = |i: usize| self.accuracy.absolute + self.accuracy.tolerance * self.x[i].abs();
+                let share = |i: usize| error[i].abs() / scale(i);
+                let worst = (0..self.x.len()).max_by(|&i, &j| share(i).total_cmp(&share(j)));
+                let (agent, state) = member(agents, group, worst.unwrap_or(0));
+                Obstacle::Underflow { agent, state }
             }
-            state -= n_states;
         }
-        unreachable!("a group has the states of its members")
     }
+
+    /// Takes the step that met a number that is not finite again, and looks where it comes from.
+    fn undefined(&mut self, agents: &Agents<'_>, group: &Group) -> Obstacle {
+        let mut flow = GroupFlow::new(agents, &group.members, &self.absent);
+        let mut witness = Witness { flow: &mut flow, found: None };
+        self.integrator.again(group.clock, &self.x, &group.integration, &mut witness);
+        let found = witness.found;
+        let trial = &self.integrator.trial;
+        let grown =
+            || (0..self.x.len()).find(|&i| !(trial.x_new[i].is_finite() && trial.rates[i].is_finite()));
+        let index = found.as_ref().map(|undefined| undefined.index).or_else(grown);
+        let (agent, state) = member(agents, group, index.unwrap_or(0));
+        let made = found.and_then(|undefined| Some((undefined.time, flow.blame(&undefined)?)));
+        Obstacle::NonFinite { agent, state, made }
+    }
+}
+
+/// The member, and the state of it, that state `index` of a group is.
+fn member(agents: &Agents<'_>, group: &Group, index: usize) -> (usize, usize) {
+    let mut state = index;
+    for &agent in &group.members {
+        let n_states = agents.agents[agent].states.len();
+        if state < n_states {
+            return (agent, state);
+        }
+        state -= n_states;
+    }
+    unreachable!("a group has the states of its members")
 }
 
 /// Cuts the last segments of a group at `t`, by dense output and without recomputation.

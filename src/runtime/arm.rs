@@ -84,8 +84,9 @@ impl<'p> Engine<'p, '_> {
         let value = truth::value(&self.agents, &mut self.present, function, &slots);
         let stands_still = least > 0.0 && value < time_resolution(self.present.time);
         if !(value >= least && value < f64::INFINITY) || stands_still {
+            let blame = self.blame(function, &transition.frame, &slots);
             let place = self.place(slots[0]);
-            return Err(Reason::BadDelay { place, value, span: transition.span }.into());
+            return Err(Reason::BadDelay { place, value, blame, span: transition.span }.into());
         }
         let state = &mut self.guards.instances[instance as usize];
         state.delay = value;

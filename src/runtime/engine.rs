@@ -6,8 +6,10 @@ use std::sync::atomic::{self, AtomicBool};
 
 use crate::base::{Diagnostic, Span};
 use crate::codegen::program::{Integrator, Program};
+use crate::codegen::trace::Compared;
 use crate::math::Interval;
 use crate::runtime::advance::Stepper;
+use crate::runtime::comparisons;
 use crate::runtime::detect::CurveRows;
 use crate::runtime::enclose::Enclosures;
 use crate::runtime::failure::{Failure, Place, Reason};
@@ -278,7 +280,14 @@ impl<'p, 'o> Engine<'p, 'o> {
     /// Where an agent is at the present instant.
     pub fn place(&mut self, agent: usize) -> Place {
         self.present.make(&self.agents, &[agent], Depth::States);
-        Place::new(&self.agents, agent, self.present.time, self.present.states(agent))
+        let attempts = &self.groups.groups[self.agents.agents[agent].group].integration.attempts;
+        let states = self.present.states(agent);
+        Place::new(&self.agents, agent, self.present.time, states, attempts.iter().copied())
+    }
+
+    /// What the guard of an instance compares at the present instant.
+    pub fn told(&mut self, instance: u32) -> Vec<Compared> {
+        comparisons::told(&self.guards, &self.agents, &mut self.present, instance)
     }
 
     /// Label and place in the source of an instance's transition or claim.

@@ -1,7 +1,9 @@
 //! Why a run stops in error: a variant for each reason, with what a person needs to find the cause.
 
-use crate::base::{Diagnostic, Span};
+use crate::base::{Diagnostic, Span, number_text};
+use crate::codegen::trace::{Blame, Compared, Valued};
 use crate::runtime::population::Agents;
+use crate::runtime::solve::integrate::Attempt;
 
 /// A run's end in error, or by its observer.
 #[derive(Debug)]
@@ -35,27 +37,88 @@ pub struct Place {
     pub mode: String,
     /// Its states and discrete variables by name, SI.
     pub values: String,
+    /// Its last steps, oldest first.
+    pub attempts: Vec<Attempt>,
 }
 
 impl Place {
-    /// The place of an agent with these states.
-    pub fn new(agents: &Agents<'_>, agent: usize, time: f64, states: &[f64]) -> Self {
+    /// The place of an agent with these states, after these steps.
+    pub fn new(
+        agents: &Agents<'_>,
+        agent: usize,
+        time: f64,
+        states: &[f64],
+        attempts: impl IntoIterator<Item = Attempt>,
+    ) -> Self {
         let row = &agents.agents[agent];
         let system = &agents.program.types[row.ty];
-        let named =
-            system.states.iter().zip(states).map(|(column, value)| format!("{} = {value}", column.name));
+        let named = system
+            .states
+            .iter()
+            .zip(states)
+            .map(|(column, value)| format!("{} = {}", column.name, number_text(*value)));
         let first = system.layout.discrete(0);
         let discretes = system.discretes.iter().zip(&row.aux[first..]);
-        let discretes = discretes.map(|(column, value)| format!("{} = {value}", column.name));
+        let discretes = discretes.map(|(column, value)| format!("{} = {}", column.name, number_text(*value)));
         let values = named.chain(discretes).collect::<Vec<_>>().join(", ");
-        Self { time, agent: agents.name(agent), mode: agents.mode(agent).path.clone(), values }
+        let attempts = attempts.into_iter().collect();
+        Self { time, agent: agents.name(agent), mode: agents.mode(agent).path.clone(), values, attempts }
     }
 
     fn note(&self) -> String {
         let mode = if self.mode.is_empty() { String::new() } else { format!(" in mode {}", self.mode) };
         let values = if self.values.is_empty() { String::new() } else { format!(": {}", self.values) };
-        format!("at t = {}: {}{mode}{values}", self.time, self.agent)
+        format!("at t = {}: {}{mode}{values}", number_text(self.time), self.agent)
     }
+
+    /// The diagnostic with the place, the agent's values and its last steps.
+    fn add_to(&self, mut diagnostic: Diagnostic) -> Diagnostic {
+        diagnostic = diagnostic.note(self.note());
+        for (k, attempt) in self.attempts.iter().enumerate() {
+            let who = if k == 0 { format!("the last steps of {}: ", self.agent) } else { String::new() };
+            diagnostic = diagnostic.note(format!("{who}{}", step(attempt)));
+        }
+        diagnostic
+    }
+}
+
+/// A step that was tried, in words.
+fn step(attempt: &Attempt) -> String {
+    let Attempt { t, h, ratio, accepted, refused } = attempt;
+    let last = if ratio.is_nan() {
+        "for a number in it is not finite".to_string()
+    } else {
+        format!("error {ratio:.2e} of what is allowed")
+    };
+    let outcome = match (accepted, refused) {
+        (true, 0) => format!("accepted, {last}"),
+        (true, tries) => format!("accepted after {tries} longer ones, {last}"),
+        (false, 0 | 1) => format!("refused, {last}"),
+        (false, tries) => format!("refused after {} longer ones, {last}", tries - 1),
+    };
+    format!("from t = {} by {h:.3e} s: {outcome}", number_text(*t))
+}
+
+/// The diagnostic with the numbers of some comparisons.
+fn with_compared(mut diagnostic: Diagnostic, compared: &[Compared]) -> Diagnostic {
+    for compared in compared {
+        diagnostic = diagnostic.note(compared.numbers());
+    }
+    diagnostic
+}
+
+/// The diagnostic with what made a number that is not finite.
+fn with_blame(diagnostic: Diagnostic, blame: Option<&Blame>) -> Diagnostic {
+    let Some(Blame { span, made, operands }) = blame else { return diagnostic };
+    let operands =
+        operands.iter().map(|Valued { text, value }| format!("`{text}` = {}", number_text(*value)));
+    let operands = operands.collect::<Vec<_>>().join(", ");
+    let of = if operands.is_empty() { String::new() } else { format!(", with {operands}") };
+    let labelled = match span {
+        Some(span) => diagnostic.label(*span, format!("this is {}", made.value)),
+        None => diagnostic,
+    };
+    labelled.note(format!("`{}` is {}{of}", made.text, made.value))
 }
 
 /// Why a run stops in error.
@@ -67,6 +130,8 @@ pub enum Reason {
         place: Place,
         /// The text given with it.
         message: Option<String>,
+        /// What it compares.
+        compared: Vec<Compared>,
         /// The invariant.
         span: Span,
     },
@@ -76,6 +141,8 @@ pub enum Reason {
         place: Place,
         /// Which state.
         state: String,
+        /// What made it so, and when, s.
+        made: Option<(f64, Blame)>,
         /// Its equation.
         span: Span,
     },
@@ -87,6 +154,8 @@ pub enum Reason {
         variable: String,
         /// What it would have become.
         value: f64,
+        /// What made it so.
+        blame: Option<Blame>,
         /// The assignment.
         span: Span,
     },
@@ -96,6 +165,8 @@ pub enum Reason {
         place: Place,
         /// Which state is hardest.
         state: String,
+        /// Its rate.
+        rate: f64,
         /// The largest magnitude of an eigenvalue of the flow's Jacobian, 1/s.
         fastest: f64,
         /// Its equation.
@@ -109,6 +180,8 @@ pub enum Reason {
         limit: u32,
         /// The labels of the transitions that repeat.
         cycle: Vec<String>,
+        /// What its guard compares.
+        compared: Vec<Compared>,
         /// The transition.
         span: Span,
     },
@@ -122,6 +195,8 @@ pub enum Reason {
         count: u32,
         /// Where the times of the events converge to, s.
         limit_time: f64,
+        /// What its guard compares.
+        compared: Vec<Compared>,
         /// The transition.
         span: Span,
     },
@@ -131,13 +206,15 @@ pub enum Reason {
         place: Place,
         /// How many times.
         count: u32,
+        /// The rates on either side, by name.
+        rates: [String; 2],
         /// The operator.
         span: Span,
     },
     /// `max_steps`.
     StepLimit {
-        /// When, s.
-        time: f64,
+        /// Where the smallest clock is.
+        place: Place,
         /// The limit.
         limit: u64,
     },
@@ -154,6 +231,8 @@ pub enum Reason {
         place: Place,
         /// Its value, s.
         value: f64,
+        /// What made it so, if it is not finite.
+        blame: Option<Blame>,
         /// The transition.
         span: Span,
     },
@@ -168,55 +247,73 @@ impl Reason {
     /// As a message to a person.
     pub fn diagnostic(&self) -> Diagnostic {
         match self {
-            Reason::InvariantFalse { place, message, span } => {
-                let mut diagnostic = Diagnostic::error("HY0501", "an invariant became false")
-                    .label(*span, message.clone().unwrap_or_else(|| "false".into()))
-                    .note(place.note());
-                diagnostic.help = Some("add a transition that leaves the mode, or acts, where the invariant ends".into());
-                diagnostic
+            Reason::InvariantFalse { place, message, compared, span } => {
+                let diagnostic = Diagnostic::error("HY0501", "an invariant became false")
+                    .label(*span, message.clone().unwrap_or_else(|| "false".into()));
+                place
+                    .add_to(with_compared(diagnostic, compared))
+                    .help("add a transition that leaves the mode, or acts, where the invariant ends")
             }
-            Reason::FlowNotFinite { place, state, span } => {
-                Diagnostic::error("HY0502", format!("the rate of `{state}` is not a finite number"))
-                    .label(*span, "this equation")
-                    .note(place.note())
+            Reason::FlowNotFinite { place, state, made, span } => {
+                let diagnostic =
+                    Diagnostic::error("HY0502", format!("the rate of `{state}` is not a finite number"))
+                        .label(*span, "this equation");
+                let blamed = with_blame(diagnostic, made.as_ref().map(|(_, blame)| blame));
+                let blamed = match made {
+                    Some((time, _)) if *time != place.time => blamed.note(format!("that is so at t = {}", number_text(*time))),
+                    Some(_) | None => blamed,
+                };
+                place
+                    .add_to(blamed)
                     .help("guard the place where it is not defined with a transition, or clamp the argument")
             }
-            Reason::ActionNotFinite { place, variable, value, span } => {
-                Diagnostic::error("HY0503", format!("an action gives `{variable}` the value {value}"))
-                    .label(*span, "this assignment")
-                    .note(place.note())
+            Reason::ActionNotFinite { place, variable, value, blame, span } => {
+                let diagnostic =
+                    Diagnostic::error("HY0503", format!("an action gives `{variable}` the value {value}"))
+                        .label(*span, "this assignment");
+                place
+                    .add_to(with_blame(diagnostic, blame.as_ref()))
                     .help("check the operands: a division by zero, a root or logarithm of a negative number?")
             }
-            Reason::StepUnderflow { place, state, fastest, span } => {
-                Diagnostic::error("HY0504", format!("the step for `{state}` fell below the resolution of time"))
-                    .label(*span, "this equation is the hardest")
-                    .note(place.note())
-                    .note(format!("the fastest rate of the flow's Jacobian here is {fastest:.3e} 1/s"))
+            Reason::StepUnderflow { place, state, rate, fastest, span } => {
+                let diagnostic =
+                    Diagnostic::error("HY0504", format!("the step for `{state}` fell below the resolution of time"))
+                        .label(*span, "this equation is the hardest");
+                place
+                    .add_to(diagnostic)
+                    .note(format!("`{state}'` is {rate:.3e} here; the fastest rate of the flow's Jacobian is {fastest:.3e} 1/s"))
                     .help("a solution that goes to infinity? a tolerance that is too small? a stiff mode?")
             }
-            Reason::MicrostepLimit { place, limit, cycle, span } => {
-                Diagnostic::error("HY0505", format!("a transition fired {limit} times in one instant"))
-                    .label(*span, "this transition")
-                    .note(place.note())
+            Reason::MicrostepLimit { place, limit, cycle, compared, span } => {
+                let diagnostic =
+                    Diagnostic::error("HY0505", format!("a transition fired {limit} times in one instant"))
+                        .label(*span, "this transition");
+                place
+                    .add_to(with_compared(diagnostic, compared))
                     .note(format!("the cycle: {}", cycle.join(", ")))
                     .help("make a guard of the cycle false by its action, or raise the limit: `--limit max_microsteps=N`")
             }
-            Reason::Zeno { place, cycle, count, limit_time, span } => {
-                Diagnostic::error("HY0506", format!("Zeno behaviour: {count} events in a time too short to resolve"))
-                    .label(*span, "this transition")
-                    .note(place.note())
+            Reason::Zeno { place, cycle, count, limit_time, compared, span } => {
+                let title = format!("Zeno behaviour: {count} events in a time too short to resolve");
+                let diagnostic = Diagnostic::error("HY0506", title).label(*span, "this transition");
+                place
+                    .add_to(with_compared(diagnostic, compared))
                     .note(format!("the cycle: {}", cycle.join(", ")))
-                    .note(format!("the times of the events converge to about t = {limit_time}"))
+                    .note(format!("the times of the events converge to about t = {}", number_text(*limit_time)))
                     .help("add a mode for what comes after (a ball at rest), or hysteresis between the guards; the limit is called `zeno_events`")
             }
-            Reason::ChatteringKink { place, count, span } => {
-                Diagnostic::error("HY0507", format!("chattering: a flow switched its branch {count} times in no time"))
-                    .label(*span, "the flows on both sides push back to where this changes")
-                    .note(place.note())
+            Reason::ChatteringKink { place, count, rates, span } => {
+                let title = format!("chattering: a flow switched its branch {count} times in no time");
+                let diagnostic = Diagnostic::error("HY0507", title)
+                    .label(*span, "the flows on both sides push back to where this changes");
+                place
+                    .add_to(diagnostic)
+                    .note(format!("on one side {}", rates[0]))
+                    .note(format!("on the other {}", rates[1]))
                     .help("write a mode for the sliding motion, or replace the jump by a steep but continuous function")
             }
-            Reason::StepLimit { time, limit } => {
-                Diagnostic::error("HY0508", format!("more than {limit} steps")).note(format!("at t = {time}")).help(
+            Reason::StepLimit { place, limit } => {
+                place.add_to(Diagnostic::error("HY0508", format!("more than {limit} steps"))).help(
                     "a larger tolerance or an earlier `until` needs fewer steps; or raise the limit: `--limit max_steps=N`",
                 )
             }
@@ -225,10 +322,11 @@ impl Reason {
                     .note("every pair of agents of an interaction or a quantifier counts")
                     .help("use fewer agents, or raise the limit: `--limit max_guards=N`")
             }
-            Reason::BadDelay { place, value, span } => {
-                Diagnostic::error("HY0510", format!("a delay or period of {value} s"))
-                    .label(*span, "of this transition")
-                    .note(place.note())
+            Reason::BadDelay { place, value, blame, span } => {
+                let diagnostic = Diagnostic::error("HY0510", format!("a delay or period of {value} s"))
+                    .label(*span, "of this transition");
+                place
+                    .add_to(with_blame(diagnostic, blame.as_ref()))
                     .help("a delay must be finite and at least 0, a period finite and at least 1e-12 s")
             }
             Reason::NeverEnds { time } => {

@@ -1,6 +1,7 @@
 //! The right-hand side of a group: the flows of all its members at one time, the states of all in one row.
 
 use crate::codegen::kernel::AgentView;
+use crate::codegen::trace::{Blame, Point};
 use crate::runtime::population::{ABSENT, Agents, Slots};
 use crate::runtime::present::Views;
 use crate::runtime::solve::method::{Flow, Tsit5Rows};
@@ -28,19 +29,74 @@ impl<'a, 'p> GroupFlow<'a, 'p> {
     }
 }
 
+impl GroupFlow<'_, '_> {
+    /// What the flow of member `k` reads.
+    fn views<'b>(&'b self, k: usize, x: &'b [f64]) -> Views<'b> {
+        if let [_] = self.members {
+            views(self.agents, &self.slots[k], self.absent, x)
+        } else {
+            group_views(self.agents, self.members, &self.slots[k], self.absent, x)
+        }
+    }
+
+    /// Whose rate was not finite, and why.
+    pub fn blame(&self, undefined: &Undefined) -> Option<Blame> {
+        let mut state = undefined.index;
+        for (k, &agent) in self.members.iter().enumerate() {
+            let n = self.agents.agents[agent].states.len();
+            if state < n {
+                let flow = self.agents.flow(agent);
+                let slots = &self.views(k, &undefined.states);
+                let point = Point { frame: &flow.frame, slots, time: undefined.time };
+                return self.agents.program.blame(flow.rates, state, &point);
+            }
+            state -= n;
+        }
+        None
+    }
+}
+
+/// Where a flow first was not finite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Undefined {
+    /// s.
+    pub time: f64,
+    /// The states of all members.
+    pub states: Vec<f64>,
+    /// Which rate.
+    pub index: usize,
+}
+
+/// A flow that remembers where it first was not finite.
+pub struct Witness<'f, 'a, 'p> {
+    /// The flow.
+    pub flow: &'f mut GroupFlow<'a, 'p>,
+    /// Where it was not finite.
+    pub found: Option<Undefined>,
+}
+
+impl Flow for Witness<'_, '_, '_> {
+    fn rates(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
+        self.flow.rates(t, x, dx);
+        if self.found.is_none() && x.iter().all(|state| state.is_finite()) {
+            let bad = dx.iter().position(|rate| !rate.is_finite());
+            self.found = bad.map(|index| Undefined { time: t, states: x.to_vec(), index });
+        }
+    }
+
+    fn tsit5(&mut self, _t: f64, _h: f64, _rows: Tsit5Rows<'_>) -> bool {
+        false
+    }
+}
+
 impl Flow for GroupFlow<'_, '_> {
     fn rates(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
         self.evaluations += self.members.len() as u64;
         let mut first = 0;
-        for (&agent, slots) in self.members.iter().zip(&self.slots) {
+        for (k, &agent) in self.members.iter().enumerate() {
             let n = self.agents.agents[agent].states.len();
-            let views = if let [_] = self.members {
-                views(self.agents, slots, self.absent, x)
-            } else {
-                group_views(self.agents, self.members, slots, self.absent, x)
-            };
             let kernel = self.agents.program.kernel(self.agents.flow(agent).rates);
-            kernel.eval(&views, t, &mut dx[first..first + n]);
+            kernel.eval(&self.views(k, x), t, &mut dx[first..first + n]);
             first += n;
         }
     }

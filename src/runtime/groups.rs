@@ -28,6 +28,8 @@ pub struct KinkHit {
     pub agent: usize,
     /// Which kink of its flow.
     pub kink: usize,
+    /// The lock's value before.
+    pub before: f64,
     /// The lock's new value.
     pub lock: f64,
 }

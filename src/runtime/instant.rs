@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use rustc_hash::FxHashMap;
 
 use crate::base::Span;
-use crate::codegen::program::{ClaimKind, Target, Trigger};
+use crate::codegen::program::{ClaimKind, ClaimSystem, Target, Trigger};
 use crate::runtime::act::{Effect, Written, claims};
 use crate::runtime::arm::Rule;
 use crate::runtime::engine::Engine;
@@ -197,6 +197,7 @@ impl Engine<'_, '_> {
         }
         let agent = self.guards.instances[instance as usize].roots[0] as usize;
         let place = self.place(agent);
+        let compared = self.told(instance);
         let (_, span): (&str, Span) = self.label(instance);
         let cycle = self
             .repetitions
@@ -206,10 +207,12 @@ impl Engine<'_, '_> {
             .collect();
         Err(match finding {
             Finding::Zeno(limit_time) => {
-                Reason::Zeno { place, cycle, count: self.limits.zeno_events, limit_time, span }.into()
+                let count = self.limits.zeno_events;
+                Reason::Zeno { place, cycle, count, limit_time, compared, span }.into()
             }
             Finding::Fine | Finding::Cycle => {
-                Reason::MicrostepLimit { place, limit: self.limits.microsteps_max, cycle, span }.into()
+                let limit = self.limits.microsteps_max;
+                Reason::MicrostepLimit { place, limit, cycle, compared, span }.into()
             }
         })
     }
@@ -306,30 +309,28 @@ impl Engine<'_, '_> {
             let agent = state.roots[0] as usize;
             match claim.kind {
                 ClaimKind::Invariant => {
-                    let place = self.place(agent);
-                    return Err(Reason::InvariantFalse {
-                        place,
-                        message: claim.message.clone(),
-                        span: claim.span,
-                    }
-                    .into());
+                    let (place, compared) = (self.place(agent), self.told(instance));
+                    let (message, span) = (claim.message.clone(), claim.span);
+                    return Err(Reason::InvariantFalse { place, message, compared, span }.into());
                 }
                 ClaimKind::Assert => {
                     self.guards.instances[instance as usize].armed = false;
-                    let time = self.present.time;
                     match self.false_asserts.iter_mut().find(|known| known.span == claim.span) {
                         Some(known) => known.count += 1,
-                        None => self.false_asserts.push(FalseAssert {
-                            span: claim.span,
-                            message: claim.message.clone(),
-                            time,
-                            agent,
-                            count: 1,
-                        }),
+                        None => self.note_assert(claim, instance, agent),
                     }
                 }
             }
         }
         Ok(())
+    }
+
+    /// Notes that an assert is false for the first time.
+    fn note_assert(&mut self, claim: &ClaimSystem, instance: u32, agent: usize) {
+        let time = self.present.time;
+        let compared = self.told(instance);
+        let mode = self.agents.mode(agent).path.clone();
+        let (span, message) = (claim.span, claim.message.clone());
+        self.false_asserts.push(FalseAssert { span, message, time, agent, mode, compared, count: 1 });
     }
 }

@@ -4,14 +4,18 @@
 //! comparison is certified up to the cover before any agent is advanced beyond it, so that one segment an agent is
 //! enough; an event is executed when nothing earlier can be found any more; what it writes is cut there.
 
+use crate::base::Span;
+use crate::codegen::program::Kink;
 use crate::runtime::act::Written;
 use crate::runtime::advance::{Advance, Obstacle};
 use crate::runtime::certify::ENDLESS;
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
+use crate::runtime::groups::KinkHit;
 use crate::runtime::guards::Origin;
 use crate::runtime::instant::Candidate;
 use crate::runtime::observe::{End, Progress};
+use crate::runtime::present::Depth;
 use crate::runtime::repetition::Finding;
 use crate::runtime::solve::time_resolution;
 use crate::runtime::stiffness::fastest_rate;
@@ -131,7 +135,8 @@ impl Engine<'_, '_> {
         }
         if self.stepper.counts.steps + self.stepper.counts.rejected > self.limits.steps_max {
             self.present.go(cover);
-            return Err(Reason::StepLimit { time: cover, limit: self.limits.steps_max }.into());
+            let place = self.place(self.groups.groups[number].members[0]);
+            return Err(Reason::StepLimit { place, limit: self.limits.steps_max }.into());
         }
         let advance =
             self.stepper.advance(&mut self.agents, &mut self.groups.groups[number], &mut self.curves);
@@ -142,7 +147,7 @@ impl Engine<'_, '_> {
                 self.present.forget();
                 for hit in &hits {
                     if let Finding::Zeno(_) = self.repetitions.turned(hit.agent, hit.kink, cover) {
-                        return Err(self.chattering(hit.agent, hit.kink, cover).into());
+                        return Err(self.chattering(hit, cover).into());
                     }
                 }
                 self.groups.groups[number].version += 1;
@@ -161,25 +166,45 @@ impl Engine<'_, '_> {
         if cause <= cover + time_resolution(cover) && cause <= self.time_end {
             return self.execute(cause);
         }
-        let (agent, state, non_finite) = match obstacle {
-            Obstacle::NonFinite { agent, state } => (agent, state, true),
-            Obstacle::Underflow { agent, state } => (agent, state, false),
-        };
         self.present.go(cover);
-        let place = self.place(agent);
-        let flow = self.agents.flow(agent);
-        let name = self.program.types[self.agents.agents[agent].ty].states[state].name.clone();
-        let span = flow.spans[state];
-        if non_finite {
-            return Err(Reason::FlowNotFinite { place, state: name, span }.into());
-        }
-        let fastest = fastest_rate(&self.agents, &mut self.present, agent);
-        Err(Reason::StepUnderflow { place, state: name, fastest, span }.into())
+        Err(match obstacle {
+            Obstacle::NonFinite { agent, state, made } => {
+                let (state, span) = self.equation(agent, state);
+                Reason::FlowNotFinite { place: self.place(agent), state, made, span }.into()
+            }
+            Obstacle::Underflow { agent, state } => {
+                let fastest = fastest_rate(&self.agents, &mut self.present, agent);
+                self.present.make(&self.agents, &[agent], Depth::Rates);
+                let rate = self.present.rates(agent)[state];
+                let (state, span) = self.equation(agent, state);
+                Reason::StepUnderflow { place: self.place(agent), state, rate, fastest, span }.into()
+            }
+        })
     }
 
-    fn chattering(&mut self, agent: usize, kink: usize, time: f64) -> Reason {
+    /// The name of a state, and where its equation stands.
+    fn equation(&self, agent: usize, state: usize) -> (String, Span) {
+        let system = &self.program.types[self.agents.agents[agent].ty];
+        (system.states[state].name.clone(), self.agents.flow(agent).spans[state])
+    }
+
+    fn chattering(&mut self, hit: &KinkHit, time: f64) -> Reason {
         self.present.go(time);
-        let span = self.agents.flow(agent).kinks[kink].span;
-        Reason::ChatteringKink { place: self.place(agent), count: self.limits.zeno_events, span }
+        let agent = hit.agent;
+        let Kink { lock, span, .. } = self.agents.flow(agent).kinks[hit.kink];
+        let rates = [hit.before, hit.lock].map(|side| {
+            self.agents.agents[agent].aux[lock] = side;
+            self.present.forget();
+            self.named_rates(agent)
+        });
+        Reason::ChatteringKink { place: self.place(agent), count: self.limits.zeno_events, rates, span }
+    }
+
+    /// `x' = 1, y' = -2`
+    fn named_rates(&mut self, agent: usize) -> String {
+        self.present.make(&self.agents, &[agent], Depth::Rates);
+        let states = &self.program.types[self.agents.agents[agent].ty].states;
+        let named = states.iter().zip(self.present.rates(agent));
+        named.map(|(state, rate)| format!("{}' = {rate}", state.name)).collect::<Vec<_>>().join(", ")
     }
 }

@@ -3,6 +3,7 @@
 use std::io;
 
 use crate::base::{Diagnostic, Span};
+pub use crate::codegen::trace::Compared;
 
 /// Told of a run as it proceeds, in the order of time. An `Err` ends the run (the disk is full, say).
 pub trait Observer {
@@ -139,6 +140,10 @@ pub struct FalseAssert {
     pub time: f64,
     /// For which agent.
     pub agent: usize,
+    /// The path of the mode it was in.
+    pub mode: String,
+    /// What it compared.
+    pub compared: Vec<Compared>,
     /// How often it became false, over all agents.
     pub count: u64,
 }

@@ -248,6 +248,15 @@ fn a_run_that_stops_in_error_ends_with_3_and_keeps_what_it_has() {
     assert_eq!(read(&folder, "f.csv").lines().count(), 4);
     let stats = json(&read(&folder, "s.json"));
     assert_eq!(stats["end"]["kind"], "error");
+    assert_eq!(stats["end"]["message"], stats["end"]["title"]);
+    assert_eq!(stats["end"]["labels"][0]["file"], "ball.hy");
+    assert!(
+        stats["end"]["notes"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|note| note.as_str().unwrap().contains("at t = 0.3"))
+    );
     assert!(stats["end"]["code"].as_str().unwrap().starts_with("HY05"));
 }
 

@@ -124,7 +124,7 @@ pub fn with_flow(graph: Graph, rates: Vec<NodeId>) -> System {
     let rates = functions.push(Function { name: "A.Only flow".to_owned(), outputs: rates });
     let slots = vec![Slot::Root { ty: 0, name: "self".to_owned() }];
     let flow = Flow {
-        frame: Frame { slots },
+        frame: Frame { slots, ..Frame::default() },
         rates,
         accelerations: rates,
         jacobian: Vec::new(),

@@ -18,6 +18,7 @@ mod harness;
 mod models;
 mod stages;
 mod rules;
+mod run_errors;
 mod instants;
 mod lints;
 mod crowds;

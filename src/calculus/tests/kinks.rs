@@ -49,7 +49,7 @@ fn rule_15_a_locked_flow_with_fresh_locks_is_the_flow_as_written() {
         let mut draft = Draft::new(&model);
         let mut scope = Scope::of_self(TypeId::new(0));
         let plain = build::number(&mut draft, &mut scope, Scope::TOP, expr).expect("no quantifiers");
-        let (locked, kinks) = kinks::lock(&mut draft, &scope, 0, &[plain], "test");
+        let (locked, kinks) = kinks::lock(&mut draft, &mut scope, 0, &[plain], "test");
         kinked += usize::from(!kinks.is_empty());
         for _ in 0..5 {
             let at = point(&mut random);
@@ -112,11 +112,11 @@ fn rule_15_a_locked_operator_continues_beyond_its_kink() {
 fn continued(op: Op, from: [f64; 2], to: [f64; 2]) -> f64 {
     let model = random::model();
     let mut draft = Draft::new(&model);
-    let scope = Scope::of_self(TypeId::new(0));
+    let mut scope = Scope::of_self(TypeId::new(0));
     let operands: Vec<NodeId> =
         (0..op.arity() as u32).map(|column| draft.graph.intern(Node::State { slot: 0, column })).collect();
     let plain = draft.graph.apply(op, &operands);
-    let (locked, kinks) = kinks::lock(&mut draft, &scope, 0, &[plain], "test");
+    let (locked, kinks) = kinks::lock(&mut draft, &mut scope, 0, &[plain], "test");
     let at =
         |[x, y]: [f64; 2]| Point { time: 0.0, states: vec![x, y, 0.0], param: 0.0, discrete: 0.0, flag: 0.0 };
     let locks = initial(&draft, &kinks, &at(from));

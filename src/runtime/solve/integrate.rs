@@ -35,6 +35,8 @@ pub struct Attempt {
     pub ratio: f64,
     /// Whether it was accepted.
     pub accepted: bool,
+    /// How many were refused at the same time, this one included if it was.
+    pub refused: u32,
 }
 
 /// How many tries are remembered.
@@ -56,7 +58,12 @@ impl Integration {
         self.past.is_empty()
     }
 
-    fn note(&mut self, attempt: Attempt) {
+    /// Notes a try; of those at one time, the last.
+    fn note(&mut self, mut attempt: Attempt) {
+        attempt.refused = u32::from(!attempt.accepted);
+        if let Some(before) = self.attempts.pop_back_if(|before| !before.accepted && before.t == attempt.t) {
+            attempt.refused += before.refused;
+        }
         if self.attempts.len() == ATTEMPTS {
             self.attempts.pop_front();
         }
@@ -124,7 +131,7 @@ impl Integrator {
             let defined = rates.iter().all(|rate| rate.is_finite());
             let ratio = if defined { self.accuracy.error_norm(error, x, x_new) } else { f64::NAN };
             let accepted = ratio <= 1.0;
-            integration.note(Attempt { t, h: step, ratio, accepted });
+            integration.note(Attempt { t, h: step, ratio, accepted, refused: 0 });
             if accepted {
                 let next = step * integration.control.accepted(ratio, *pace);
                 integration.h = Some(if step < h { next.max(h) } else { next }.min(1e100));
@@ -132,6 +139,17 @@ impl Integrator {
             }
             self.rejected += 1;
             h = step * integration.control.rejected(ratio, *pace);
+        }
+    }
+
+    /// Does again what failed last, for a flow that looks on.
+    pub fn again(&mut self, t: f64, x: &[f64], integration: &Integration, flow: &mut dyn Flow) {
+        match integration.attempts.back() {
+            Some(last) if !integration.is_fresh() => {
+                let start = Start { t, h: last.h, x, past: &integration.past };
+                self.method.step(&start, flow, &mut self.trial);
+            }
+            Some(_) | None => flow.rates(t, x, &mut self.trial.rates),
         }
     }
 

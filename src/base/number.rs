@@ -11,3 +11,10 @@ pub fn write_number(text: &mut String, value: f64) {
     let written = if positional { write!(text, "{value}") } else { write!(text, "{value:e}") };
     written.expect("writing to memory cannot fail");
 }
+
+/// The text that [`write_number`] appends.
+pub fn number_text(value: f64) -> String {
+    let mut text = String::new();
+    write_number(&mut text, value);
+    text
+}
