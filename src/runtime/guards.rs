@@ -289,7 +289,7 @@ impl<'p> Guards<'p> {
     }
 
     /// The atom of an atom instance, and the agents that the quantifiers around it bind, innermost first.
-    fn bindings(&self, agents: &Agents<'_>, index: usize) -> (usize, SmallVec<[(Binder, usize); 2]>) {
+    pub fn bindings(&self, agents: &Agents<'_>, index: usize) -> (usize, SmallVec<[(Binder, usize); 2]>) {
         let instance = self.atoms[index].instance;
         let shapes = &self.definition(instance).atoms;
         let offset = index - self.instances[instance as usize].atoms as usize;
