@@ -27,10 +27,12 @@ mod actions;
 mod symmetry;
 mod agents;
 mod dump;
+mod lint;
 
 use crate::base::Diagnostic;
 use crate::calculus::draft::Draft;
 pub use crate::calculus::dump::dump;
+pub use crate::calculus::lint::lint;
 use crate::calculus::system::System;
 use crate::model::ir::Model;
 

@@ -63,7 +63,10 @@ fn check_one(path: &Path, settings: &Settings, levels: &Levels) -> Result<Checke
     let mut loaded = load(path, settings)?;
     let mut exit = loaded.exit();
     let system = match loaded.model.as_ref().map(calculus::derive) {
-        Some(Ok(system)) => Some(system),
+        Some(Ok(system)) => {
+            loaded.warnings.extend(calculus::lint(&system));
+            Some(system)
+        }
         Some(Err(diagnostics)) => {
             loaded.diagnostics.extend(diagnostics);
             None

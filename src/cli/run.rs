@@ -34,9 +34,9 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     let loaded = load(&arguments.model, &settings_of(arguments))?;
     tell(&loaded.sources, &loaded.diagnostics);
     let exit = loaded.exit();
-    let Loaded { sources, warnings, model: Some(model), inputs, .. } = loaded else { return Ok(exit) };
+    let Loaded { sources, mut warnings, model: Some(model), inputs, .. } = loaded else { return Ok(exit) };
     refuse_endless(&model)?;
-    let program = match compile(&model, arguments.engine.backend) {
+    let program = match compile(&model, arguments.engine.backend, &mut warnings) {
         Ok(program) => program,
         Err(diagnostics) => {
             tell(&sources, &diagnostics);
@@ -101,9 +101,14 @@ fn settings_of(arguments: &RunArguments) -> Settings {
     Settings { params, until, tolerance, absolute, seed, integrator, record_all }
 }
 
-/// The lower floors, one after the other.
-fn compile(model: &Model, backend: BackendName) -> Result<Program, Vec<Diagnostic>> {
+/// The lower floors, one after the other; adds to the warnings about the model.
+fn compile(
+    model: &Model,
+    backend: BackendName,
+    warnings: &mut Vec<Diagnostic>,
+) -> Result<Program, Vec<Diagnostic>> {
     let system = calculus::derive(model)?;
+    warnings.extend(calculus::lint(&system));
     let backend = match backend {
         BackendName::Jit => Backend::Jit,
         BackendName::Interp => Backend::Interpreter,

@@ -64,9 +64,12 @@ fn code(word: &str) -> Result<String, Refused> {
 
 /// The line on which a place begins, and the one above.
 fn lines_about(sources: &SourceMap, span: Span) -> impl Iterator<Item = &str> {
-    let (line, _) = sources.line_column(span);
-    let skipped = line.saturating_sub(2);
-    sources.file(span.file).text.lines().skip(skipped).take(line - skipped)
+    let text = sources.file(span.file).text.as_str();
+    let start = (span.start as usize).min(text.len());
+    let line_at = |at: usize| text[..at].rfind('\n').map_or(0, |newline| newline + 1);
+    let own = line_at(start);
+    let above = own.checked_sub(1).map(|newline| &text[line_at(newline)..newline]);
+    text[own..].lines().next().into_iter().chain(above)
 }
 
 /// Whether the comment of a line says `allow` and then, among codes, this one.

@@ -417,6 +417,8 @@ pub struct Population {
     pub blocks: Vec<Block>,
     /// All agents in order.
     pub agents: Vec<Instance>,
+    /// Discrete variables that every agent of their type starts with a value that the text declares as a constant.
+    pub fixed: Vec<(TypeId, usize)>,
 }
 
 impl Population {

@@ -51,12 +51,28 @@ pub(super) fn populate<'a>(
     for plan in &plans {
         context.from_data.extend(plan.given_by_data());
     }
+    context.model.population.fixed = context.fixed(&plans);
     if !context.has_errors() {
         context.make(&plans, initials);
     }
 }
 
 impl<'a> Context<'a> {
+    /// The discrete variables that all plans of their type leave at a declared constant.
+    fn fixed(&self, plans: &[Plan]) -> Vec<(TypeId, usize)> {
+        let is_fixed = |source: &Source| matches!(source, Source::Declared(Given::Value(id)) if self.facts[id.index()].closed);
+        let mut by_type: FxHashMap<TypeId, Vec<bool>> = FxHashMap::default();
+        for plan in plans {
+            let all = by_type.entry(plan.ty).or_insert_with(|| vec![true; plan.discretes.len()]);
+            all.iter_mut().zip(&plan.discretes).for_each(|(all, source)| *all &= is_fixed(source));
+        }
+        let of_type = |ty: TypeId| {
+            let all = by_type.get(&ty).into_iter().flatten().enumerate();
+            all.filter(|(_, fixed)| **fixed).map(move |(k, _)| (ty, k)).collect::<Vec<_>>()
+        };
+        self.model.types.indices().flat_map(of_type).collect()
+    }
+
     fn plan(
         &mut self,
         item: &'a ast::Instance,

@@ -43,8 +43,11 @@ fn diagnose(text: &str) -> (SourceMap, Vec<Diagnostic>) {
     };
     let checked = model::check(&tree, &mut sources, &mut NoFiles, &Settings::default());
     let mut diagnostics = checked.diagnostics;
-    if let Some(Err(found)) = checked.model.as_ref().map(calculus::derive) {
-        diagnostics.extend(found);
+    diagnostics.extend(checked.warnings);
+    match checked.model.as_ref().map(calculus::derive) {
+        Some(Ok(system)) => diagnostics.extend(calculus::lint(&system)),
+        Some(Err(found)) => diagnostics.extend(found),
+        None => {}
     }
     (sources, diagnostics)
 }

@@ -42,8 +42,10 @@ fn find(
     let checked = model::check(&tree, sources, &mut Beside(folder.to_path_buf()), &settings);
     let problems = render(sources, &checked.diagnostics, Colours::None);
     let model = checked.model.unwrap_or_else(|| panic!("{name}: {problems}"));
-    let _ = calculus::derive(&model).unwrap();
-    checked.warnings
+    let mut found = checked.warnings;
+    found.extend(calculus::lint(&calculus::derive(&model).unwrap()));
+    found.sort_by_key(|warning| warning.labels.first().map(|label| label.span));
+    found
 }
 
 fn root() -> PathBuf {
@@ -161,4 +163,251 @@ fn switches_are_no_dead_transitions() {
     for guard in ["n > 5 and x >= 1", "x >= 1 and n == 4", "inf < n and (x >= 1 or x <= 0)"] {
         assert_eq!(codes(&model(guard)), ["HY0605"], "{guard}");
     }
+}
+
+/// The warnings about one agent with these parts, with a car beside it.
+#[track_caller]
+fn of_agent(parts: &str) -> Vec<&'static str> {
+    codes(&format!("agent A(p: real) {{ {parts} }}  system {{ a = A[2](p = index) }}"))
+}
+
+/// The same, with parameters of the file that are used elsewhere.
+#[track_caller]
+fn of_agent_with_params(parts: &str) -> Vec<&'static str> {
+    codes(&format!(
+        "param sure: bool = true  param cap = 2
+         agent A(p: real) {{ {parts} }}  system {{ a = A[2](p = if sure then cap else index) }}"
+    ))
+}
+
+#[test]
+fn conditions_that_the_states_can_make_true_are_no_dead_ones() {
+    let alive = [
+        // an unknown state, an unknown parameter, time, an infinite constant as a switch
+        "x >= 1",
+        "p >= 5 and x >= 1",
+        "p > 1",
+        "time > 3",
+        "x >= inf",
+        "x^2 >= 4",
+        "x*x - 2*x < 0",
+        "x^3 < 0",
+        // discrete variables that are given such a value, by whatever way
+        "k >= 7",
+        "lit",
+        "not lit",
+        "odd == 3",
+        "odd != 0 and lit",
+        // in a mode, or not
+        "self is M",
+        "exists o in other A: o is N",
+        "exists o in A: o.k == 2 and o.x >= x + 1",
+        // squares that are compared with something, regions that only look like points
+        "(x - 1)^2 <= 0.01",
+        "abs(x) > 0",
+        "max(x, 0) <= 0",
+        "x^2 <= p",
+        "clamp(x, 0, 1) <= 0",
+        "floor(x)^2 <= 0",
+        "hypot(x, y) <= 1",
+        "crossing(x)",
+        "crossing(x^2 - 1)",
+        "time <= 0",
+        "rising(x >= 1)",
+    ];
+    for guard in alive {
+        let parts = "state x = 0, y = 0
+            discrete k: int = 0, lit: bool = false, odd: int = 0
+            flow { x' = p  y' = 0 }
+            step: every 1 { k := k + 2  odd := if lit then 3 else odd }
+            light: when x >= 100 { lit := true }
+            initial mode M { go: when y >= 1 -> N } mode N { }";
+        assert_eq!(of_agent(&format!("{parts} t: when {guard} {{ x := 0 }}")), [""; 0], "{guard}");
+    }
+}
+
+#[test]
+fn a_discrete_variable_that_data_or_chance_starts_may_have_any_value() {
+    let model = |start: &str, made: &str| {
+        format!(
+            "agent A {{ state x = 0  discrete k = {start}  flow {{ x' = 1 }}
+               t: when k >= 2 and x >= 1 {{ x := 0 }} }}
+             system {{ {made} }}"
+        )
+    };
+    assert_eq!(codes(&model("1", "a = A()")), ["HY0605"]);
+    assert_eq!(codes(&model("1", "a = A()  b = A(k = 1)")), [""; 0]);
+    assert_eq!(codes(&model("index", "a = A[2]()")), [""; 0]);
+    assert_eq!(codes(&model("1", "a = A(k ~ Uniform(0, 1))")), [""; 0]);
+}
+
+#[test]
+fn transitions_that_get_their_turn_are_not_hidden() {
+    let modes = |first: &str, second: &str| {
+        format!(
+            "state x = 0, y = 0  flow {{ x' = 1  y' = p }}
+             initial mode M {{ {first} {second} }} mode N {{ back: when y >= 9 -> M }} mode O {{ }}
+             out: when y >= 20 -> O  in_: when y >= 30 -> N"
+        )
+    };
+    let hidden = [
+        ("a: when x >= 1 -> N", "b: when x >= 1 -> O"),
+        ("a: when x >= 1 -> N", "b: when x >= 1 { x := 0 }"),
+        ("b: when x >= 1 -> O", "a: when x >= 1 priority 1 -> N"),
+        ("a: when x^2 >= 0 -> N", "b: when y >= 1 -> O"),
+        ("a: when true -> N", "b: after 3 -> O"),
+        ("a: when exists o in other A: o.x >= 1 -> N", "b: when exists o in other A:  o.x >= 1 -> O"),
+    ];
+    for (first, second) in hidden {
+        assert_eq!(of_agent_with_params(&modes(first, second)), ["HY0606"], "{first} {second}");
+    }
+    let seen = [
+        ("a: when x >= 1 -> N", "b: when x > 1 -> O"),
+        ("a: when x >= 1 -> N", "b: when x >= 1 and y >= 1 priority 1 -> O"),
+        ("a: when x >= 1 { y := 0 }", "b: when x >= 1 -> O"),
+        ("a: when x >= 1 and y >= 1 -> N", "b: when x >= 1 -> O"),
+        ("a: after 1 when x >= 1 -> N", "b: when x >= 1 -> O"),
+        ("a: when x >= 1 priority y -> N", "b: when x >= 1 priority 1 -> O"),
+        ("b: when y >= 1 -> O", "a: when true -> N"),
+        ("a: when x >= 1 and sure -> N", "b: when x >= 1 -> O"),
+        ("a: when x >= cap -> N", "b: when x >= 2 -> O"),
+    ];
+    for (first, second) in seen {
+        assert_eq!(of_agent_with_params(&modes(first, second)), [""; 0], "{first} {second}");
+    }
+}
+
+#[test]
+fn transitions_into_their_own_mode_fire_again_only_if_their_condition_is_still_true() {
+    let modes = |transition: &str| {
+        format!(
+            "state x = 0, y = 0  discrete n: int = 0, next = 1  flow {{ x' = 1  y' = p }}
+             initial mode M {{ {transition} }}  mode N {{ entry {{ x := 0 }}  go: when y >= 1 + next + n -> M }}
+             out: when y >= 20 -> N"
+        )
+    };
+    let again = [
+        "t: when x >= 1 -> M",
+        "t: when x >= 1 -> M { n := n + 1 }",
+        "t: when x >= 1 -> M { x := x + 1 }",
+        "t: when x >= 1 -> M { x := 2*x }",
+        "t: when x >= 1 and x <= 5 -> M { x := 3 }",
+        "t: when x >= 1 or x <= -1 -> M { n := 1 }",
+        "t: when x >= 1 -> M { n := n + 1 }  later: when n >= 5 -> N",
+        "far: when x >= 5 -> N  t: when x <= 1 -> M { x := x - 1 }",
+        "t: when exists o in other A: o.x >= 2 -> M",
+        "t: when time >= 3 -> M { x := 0 }",
+    ];
+    for transition in again {
+        assert_eq!(of_agent(&modes(transition)), ["HY0607"], "{transition}");
+    }
+    let once = [
+        "t: when x >= 1 -> M { x := 0 }",
+        "t: when x >= 1 -> M { x := x - 1 }",
+        "t: when x >= 1 -> M { x := y }",
+        "t: when x >= 1 -> M { if y >= 1 { x := 0 } }",
+        "t: when x >= 1 -> M { stop }",
+        "t: when x >= 1 -> N",
+        "t: when x >= 1 { n := n + 1 }",
+        "t: when rising(x >= 1) -> M",
+        "t: when crossing(x - 1) -> M",
+        "t: after 1 when x >= 1 -> M",
+        "t: every 1 when x >= 1 -> M",
+        "t: when time >= next -> M { next := next + 1 }",
+        "first: when n >= 5 -> N  t: when x >= 1 -> M { n := n + 1 }",
+        "t: when x >= 1 -> M { n := n + 1 }  first: when n >= 5 priority 1 -> N",
+        "t: when x >= 1 and n <= 3 -> M { n := n + 1 }",
+        "t: when x >= 1 -> M { x := -x }",
+        "exit { x := 0 }  t: when x >= 1 -> M",
+    ];
+    for transition in once {
+        assert_eq!(of_agent(&modes(transition)), [""; 0], "{transition}");
+    }
+}
+
+#[test]
+fn opposite_conditions_are_told_from_those_that_only_look_so() {
+    let modes = |[rate, there]: [&str; 2], [rate_back, back]: [&str; 2]| {
+        format!(
+            "state x = 0, y = 0  discrete n: int = 0
+             initial mode M {{ flow {{ x' = {rate}  y' = p }}  a: when {there} -> N }}
+             mode N {{ flow {{ x' = {rate_back}  y' = p }}  b: when {back} -> M }}
+             mark: every 5 {{ n := n + 1 }}"
+        )
+    };
+    let both = [
+        (["1", "x >= 1"], ["-1", "x <= 2"]),
+        (["1", "x > 1"], ["1", "2*x < 3"]),
+        (["1", "x - y >= 1"], ["1", "y - x >= -2"]),
+        (["1", "x >= 1 or y >= 3"], ["1", "x <= 1.5"]),
+        (["1", "exists o in other A: (o.x - x)^2 <= 4"], ["1", "forall o in other A: (x - o.x)^2 >= 1"]),
+        (["1", "hypot(x, y) <= 4"], ["1", "hypot(x, y) >= 3"]),
+    ];
+    for (there, back) in both {
+        assert_eq!(of_agent(&modes(there, back)), ["HY0609"], "{there:?} {back:?}");
+    }
+    let chattering = [
+        (["1", "x >= 1"], ["-1", "x <= 1"]),
+        (["2 - x", "x >= 1"], ["-x", "1 >= x"]),
+        (["p + 1", "x > 1"], ["-1 - p", "x < 1"]),
+        (["3", "2*x - 2 >= 0 or y >= 3"], ["-1 - exp(y)", "x <= 1"]),
+        (["cos(y) + 3", "x - time >= 1"], ["-2", "x - time <= 1"]),
+    ];
+    for (there, back) in chattering {
+        assert_eq!(of_agent(&modes(there, back)), ["HY0610"], "{there:?} {back:?}");
+    }
+    let fine = [
+        // a gap
+        (["1", "x >= 2"], ["-1", "x <= 1"]),
+        // the flow goes on through the boundary, or may
+        (["1", "x >= 1"], ["1", "x <= 1"]),
+        (["1", "x >= 1"], ["y", "x <= 1"]),
+        (["-y", "x >= 1"], ["-1", "x <= 1"]),
+        (["p", "x >= 1"], ["-p", "x <= 1"]),
+        (["0", "x >= 1"], ["-1", "x <= 1"]),
+        // not of one quantity, or not alone
+        (["1", "x >= 1"], ["-1", "y <= 1"]),
+        (["1", "x >= 1"], ["-1", "x <= 2 and y >= 1"]),
+        (["1", "x >= 1 + y"], ["-1", "x <= 1 - y"]),
+        (["1", "forall o in other A: o.x >= 1"], ["1", "forall o in other A: o.x <= 2"]),
+        (["1", "exists o in other A: o.x >= 1"], ["-1", "x <= 2"]),
+        // one of them changes what is asked, or waits
+        (["1", "x >= 1 -> N { x := 5 } t: when y >= 30"], ["-1", "x <= 2"]),
+        (["1", "x >= 1"], ["-1", "rising(x <= 2)"]),
+    ];
+    for (there, back) in fine {
+        assert_eq!(of_agent(&modes(there, back)), [""; 0], "{there:?} {back:?}");
+    }
+    let counted = modes(["1", "x >= 1"], ["-1", "x <= 2 -> M { n := n + 1 }  c: when y >= 9"]);
+    assert_eq!(of_agent(&counted), ["HY0609"]);
+    let led_out = counted.replace("initial mode M {", "out: when n >= 3 { x := 9 } initial mode M {");
+    assert_eq!(of_agent(&led_out), [""; 0]);
+}
+
+#[test]
+fn a_quantifier_without_other_is_fine_where_oneself_does_not_settle_it() {
+    let asked = [
+        ("exists o in A: abs(o.x - x) <= 1", true),
+        ("exists o in A where o.p == p: o.x >= x", true),
+        ("forall o in A: (o.x - x)^2 + (o.y - y)^2 >= 1", true),
+        ("not (exists o in A: hypot(o.x - x, o.y - y) <= 1)", true),
+        ("x >= 1 and (exists o in A: o.x <= x + 1)", true),
+        ("exists o in other A: abs(o.x - x) <= 1", false),
+        ("exists o in A: o.x >= x + 1", false),
+        ("exists o in A where o.x > x: o.x - x <= 1", false),
+        ("exists o in A: o.x >= 3", false),
+        ("forall o in A: o.x <= x", false),
+        ("exists o in A: o.x - x <= p", false),
+        ("exists o in B: abs(o.z - x) <= 1", false),
+    ];
+    for (guard, settled) in asked {
+        let text = format!(
+            "agent B {{ state z = 0  flow {{ z' = 1 }} }}
+             agent A(p: real) {{ state x = 0, y = 0  flow {{ x' = p  y' = 1 }}  t: when {guard} {{ x := 0 }} }}
+             system {{ a = A[2](p = index)  b = B() }}"
+        );
+        let expected: &[&str] = if settled { &["HY0611"] } else { &[] };
+        assert_eq!(codes(&text), expected, "{guard}");
+    }
+    assert_eq!(of_agent("state x = p  flow { x' = 1 }  assert forall o in A: abs(o.x - x) >= 1"), ["HY0611"]);
 }

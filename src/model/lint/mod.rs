@@ -8,6 +8,7 @@ mod warning;
 mod unused;
 mod unreached;
 mod settled;
+mod repeated;
 mod lookalike;
 
 use super::context::Context;
@@ -28,6 +29,7 @@ pub(super) fn lint(context: &mut Context) -> Vec<Diagnostic> {
     unreached::modes(context, &mut found);
     lookalike::names(context, &mut found);
     settled::conditions(context, &mut found);
+    repeated::conditions(context, &mut found);
     let mut found: Vec<Diagnostic> = found.into_iter().map(Diagnostic::from).collect();
     found.sort_by_key(|diagnostic| diagnostic.labels.first().map(|label| label.span));
     found.dedup();

@@ -11,6 +11,7 @@ use crate::base::Span;
 use crate::model::context::{Body, Context, Meaning, Progress};
 use crate::model::ir::{Action, ExprId, ExprKind, Interaction, Model, Trigger, TypeId, VarRef};
 use crate::model::types::Ty;
+use crate::syntax::ast::Formal;
 
 /// A name that says of itself that it is not used.
 fn meant(name: &str) -> bool {
@@ -171,8 +172,10 @@ pub(super) fn bound(context: &Context, found: &mut Vec<Warning>) {
         let what = "bound here, but what follows does not ask about it".to_string();
         found.extend(unused(&binder.name, what, binder.span));
     }
-    for interaction in model.interactions.iter() {
-        participants(context, interaction, found);
+    for names in &context.pairs {
+        if let Some(id) = names.id {
+            participants(model, &model.interactions[id], &names.item.formals, found);
+        }
     }
 }
 
@@ -180,12 +183,8 @@ fn is_number(model: &Model, id: ExprId) -> bool {
     matches!(model.exprs[id].kind, ExprKind::Number(_))
 }
 
-fn participants(context: &Context, interaction: &Interaction, found: &mut Vec<Warning>) {
-    let model = &context.model;
-    let Some(names) = context.pairs.iter().find(|names| names.item.name.span == interaction.span) else {
-        return;
-    };
-    for (which, formal) in names.item.formals.iter().enumerate().take(2) {
+fn participants(model: &Model, interaction: &Interaction, formals: &[Formal], found: &mut Vec<Warning>) {
+    for (which, formal) in formals.iter().enumerate().take(2) {
         let mut roots = Vec::new();
         let mut moved = false;
         for transition in &interaction.transitions {

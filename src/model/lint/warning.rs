@@ -16,6 +16,8 @@ pub(super) enum Warning {
     NeverTrue { label: String, span: Span, transition: Span },
     /// A delay that never ends.
     Endless { label: String, span: Span },
+    /// A transition with the same condition as one that comes before it and leaves the mode.
+    Hidden { label: String, span: Span, by: String, first: Span },
     /// A name that is easily taken for a word of the language.
     Lookalike { name: String, word: &'static str, span: Span, same_letters: bool },
 }
@@ -60,6 +62,12 @@ impl From<Warning> for Diagnostic {
                     .label(span, "this delay is infinite")
                     .note("entering the mode would end the run (HY0510)")
                     .help("leave the transition out, or give it a finite delay")
+            }
+            Warning::Hidden { label, span, by, first } => {
+                Diagnostic::warning("HY0606", format!("`{label}` never gets its turn: `{by}` comes first"))
+                    .label(span, "never fires")
+                    .label(first, "the same condition, and leaves the mode")
+                    .help("correct one of the two conditions, or leave one transition out")
             }
             Warning::Lookalike { name, word, span, same_letters } => {
                 let label = if same_letters {

@@ -1,0 +1,178 @@
+//! Transitions into their own mode that leave their condition true (HY0607): entering the mode arms them afresh, they fire again, and so
+//! on within one instant.
+//!
+//! Certain if the actions write nothing that the condition reads; or if every comparison, computed from what they write, is at least as
+//! true as before: its g is not above what it was, or below zero whatever the state is. Not reported if they may end the run, or
+//! if they write what a transition reads that has its turn before and may lead out, unless that one is certainly false then.
+
+use rustc_hash::FxHashMap;
+
+use crate::calculus::graph::Node;
+use crate::calculus::lint::Warning;
+use crate::calculus::lint::bounds::{Bounds, REAL};
+use crate::calculus::lint::effects::{Effect, before, effect, guard, nodes, plain_guard, read_by, reads};
+use crate::calculus::lint::form::FormId;
+use crate::calculus::lint::reader::Reader;
+use crate::calculus::lint::truth::{Truth, holds, truth};
+use crate::calculus::system::{
+    ActionStep, Condition, Frame, FunctionId, Guard, Relation, System, Target, TransitionSystem,
+};
+use crate::math::Interval;
+
+/// Looks at every transition into its own mode.
+pub fn transitions(system: &System, bounds: &Bounds, found: &mut Vec<Warning>) {
+    for (number, ty) in system.types.iter().enumerate() {
+        for (k, transition) in ty.transitions.iter().enumerate() {
+            let into_itself = transition.source != 0 && transition.target == Some(transition.source);
+            if into_itself && let Some(untouched) = fires_again(system, bounds, number, k) {
+                let mode = ty.modes[transition.source].path.clone();
+                let (label, span) = (transition.label.clone(), transition.span);
+                found.push(Warning::Again { label, span, mode, untouched });
+            }
+        }
+    }
+}
+
+/// Whether it fires again at once, and if so whether nothing that its condition reads is written.
+fn fires_again(system: &System, bounds: &Bounds, number: usize, k: usize) -> Option<bool> {
+    let ty = &system.types[number];
+    let transition = &ty.transitions[k];
+    let guard = plain_guard(transition)?;
+    let effect = effect(ty, transition);
+    if effect.stops {
+        return None;
+    }
+    let read = reads(system, ty, &nodes(system, guard));
+    let untouched = effect.writes.is_disjoint(&read);
+    let mut kept = Kept::new(system, bounds, transition, guard, &effect);
+    if !untouched && (!effect.unclear.is_disjoint(&read) || !kept.condition(&guard.condition)) {
+        return None;
+    }
+    let mut earlier = before(system, number, k)?.into_iter();
+    let leads_out = earlier.any(|other| {
+        let read = read_by(system, ty, &[other]);
+        let is_own = ty.transitions.iter().any(|own| std::ptr::eq(own, other));
+        let unmoved = effect.writes.is_disjoint(&read);
+        let certain = is_own && effect.unclear.is_disjoint(&read);
+        !(unmoved || certain && kept.keeps_false(other))
+    });
+    (!leads_out).then_some(untouched)
+}
+
+/// Compares the condition after the actions with that before them.
+struct Kept<'s> {
+    guard: &'s Guard,
+    /// What the guard's functions were before.
+    before: FxHashMap<FunctionId, FormId>,
+    /// What the actions write.
+    written: FxHashMap<Node, FormId>,
+    frame: &'s Frame,
+    after: Reader<'s>,
+}
+
+impl<'s> Kept<'s> {
+    fn new(
+        system: &'s System,
+        bounds: &'s Bounds,
+        transition: &'s TransitionSystem,
+        guard: &'s Guard,
+        effect: &Effect,
+    ) -> Self {
+        let frame = &transition.frame;
+        let mut reader = Reader::new(system, bounds, frame);
+        for (leaf, interval) in restrictions(Reader::new(system, bounds, frame), guard) {
+            reader.bound(leaf, interval);
+        }
+        let before = functions(guard).into_iter().map(|function| (function, reader.function(function)));
+        let before = before.collect();
+        let mut written = FxHashMap::default();
+        for step in &effect.own.steps {
+            let ActionStep::Assign { slot: 0, target, value, .. } = step else { continue };
+            let leaf = match target {
+                Target::State(column) => Node::State { slot: 0, column: *column as u32 },
+                Target::Aux(column) => Node::Aux { slot: 0, column: *column as u32 },
+                Target::Mode => continue,
+            };
+            written.insert(leaf, reader.function(*value));
+        }
+        reader.read_as(frame, written.clone(), None);
+        Self { guard, before, written, frame, after: reader }
+    }
+
+    /// Whether the condition of another transition of the agent is certainly false after the actions.
+    fn keeps_false(&mut self, other: &'s TransitionSystem) -> bool {
+        // Other agents would be mistaken for those of this frame.
+        let Some(guard) = guard(other).filter(|_| other.frame.slots.len() == 1) else { return false };
+        self.after.read_as(&other.frame, self.written.clone(), None);
+        let truth = truth(&mut self.after, guard, &guard.condition);
+        self.after.read_as(self.frame, self.written.clone(), None);
+        truth == Truth::Never
+    }
+
+    /// Whether the condition is true after the actions if it was true before.
+    fn condition(&mut self, condition: &Condition) -> bool {
+        match condition {
+            Condition::Constant(value) => *value,
+            Condition::Discrete(function) => {
+                let after = self.after.function(*function);
+                self.before[function] == after || self.after.forms.interval(after).is_true()
+            }
+            Condition::Atom(k) => {
+                let atom = &self.guard.atoms[*k];
+                self.atom(atom.relation, atom.value)
+            }
+            Condition::And(terms) | Condition::Or(terms) => terms.iter().all(|term| self.condition(term)),
+            Condition::Exists(quantified) | Condition::Forall(quantified) => self.condition(&quantified.body),
+            Condition::Rising(..) => false,
+        }
+    }
+
+    fn atom(&mut self, relation: Relation, value: FunctionId) -> bool {
+        let (before, after) = (self.before[&value], self.after.function(value));
+        let forms = &mut self.after.forms;
+        if holds(relation, forms.interval(after)) {
+            return true;
+        }
+        let change = forms.plus(after, -1.0, before);
+        relation != Relation::Crossing && change.is_some_and(|change| forms.interval(change).hi <= 0.0)
+    }
+}
+
+/// Where single states lie when the guard is true.
+fn restrictions(mut reader: Reader, guard: &Guard) -> Vec<(Node, Interval)> {
+    let terms = match &guard.condition {
+        Condition::And(terms) => terms.as_slice(),
+        condition => std::slice::from_ref(condition),
+    };
+    let mut found: Vec<(Node, Interval)> = Vec::new();
+    for term in terms {
+        let Condition::Atom(k) = term else { continue };
+        let form = reader.function(guard.atoms[*k].value);
+        let Some((leaf @ Node::State { slot: 0, .. }, factor, constant)) = reader.forms.as_leaf(form) else {
+            continue;
+        };
+        let bound = -constant / factor;
+        let side = if factor > 0.0 { Interval::new(REAL.lo, bound) } else { Interval::new(bound, REAL.hi) };
+        match found.iter_mut().find(|(known, _)| *known == leaf) {
+            Some((_, known)) => *known = known.intersect(side).unwrap_or(*known),
+            None => found.push((leaf, side)),
+        }
+    }
+    found
+}
+
+/// What a guard is computed by.
+fn functions(guard: &Guard) -> Vec<FunctionId> {
+    let mut found: Vec<FunctionId> = guard.atoms.iter().map(|atom| atom.value).collect();
+    let mut pending = vec![&guard.condition];
+    while let Some(condition) = pending.pop() {
+        match condition {
+            Condition::Discrete(function) => found.push(*function),
+            Condition::And(terms) | Condition::Or(terms) => pending.extend(terms),
+            Condition::Exists(quantified) | Condition::Forall(quantified) => pending.push(&quantified.body),
+            Condition::Rising(_, inner) => pending.push(inner),
+            Condition::Constant(_) | Condition::Atom(_) => {}
+        }
+    }
+    found
+}

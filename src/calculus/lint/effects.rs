@@ -1,0 +1,164 @@
+//! What transitions read and write of their own agent, and which of them stand beside which.
+
+use rustc_hash::FxHashSet;
+
+use crate::calculus::graph::{Node, NodeId};
+use crate::calculus::system::{
+    ActionList, ActionStep, AgentSystem, Condition, FunctionId, Guard, System, Target, TransitionSystem,
+    Trigger,
+};
+
+/// How many transitions of one mode are compared with each other.
+pub const COMPARED_MAX: usize = 64;
+
+/// The condition of a transition, if it has one.
+pub fn guard(transition: &TransitionSystem) -> Option<&Guard> {
+    match &transition.trigger {
+        Trigger::When(guard) => Some(guard),
+        Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
+    }
+}
+
+/// The condition of a transition that waits for nothing else, and has no memory.
+pub fn plain_guard(transition: &TransitionSystem) -> Option<&Guard> {
+    match &transition.trigger {
+        Trigger::When(guard) => {
+            let crosses = |atom: &crate::calculus::system::Atom| {
+                atom.relation == crate::calculus::system::Relation::Crossing
+            };
+            (guard.n_rising == 0 && !guard.atoms.iter().any(crosses)).then_some(guard)
+        }
+        Trigger::After { .. } | Trigger::Every { .. } => None,
+    }
+}
+
+/// Everything that a guard is computed from.
+pub fn nodes(system: &System, guard: &Guard) -> Vec<NodeId> {
+    let mut functions: Vec<FunctionId> = guard.atoms.iter().map(|atom| atom.value).collect();
+    tests(&guard.condition, &mut functions);
+    functions.into_iter().map(|function| system.functions[function].outputs[0]).collect()
+}
+
+fn tests(condition: &Condition, found: &mut Vec<FunctionId>) {
+    match condition {
+        Condition::Discrete(function) => found.push(*function),
+        Condition::And(terms) | Condition::Or(terms) => terms.iter().for_each(|term| tests(term, found)),
+        Condition::Exists(quantified) | Condition::Forall(quantified) => tests(&quantified.body, found),
+        Condition::Rising(_, inner) => tests(inner, found),
+        Condition::Constant(_) | Condition::Atom(_) => {}
+    }
+}
+
+/// The columns that these nodes read, of whichever agent; `x'` counts as all states.
+pub fn reads(system: &System, ty: &AgentSystem, roots: &[NodeId]) -> FxHashSet<Target> {
+    let mut found = FxHashSet::default();
+    for id in system.graph.reach(roots) {
+        match system.graph.node(id) {
+            Node::State { column, .. } => {
+                found.insert(Target::State(column as usize));
+            }
+            Node::Aux { column, .. } => {
+                found.insert(Target::Aux(column as usize));
+            }
+            Node::Rate { .. } | Node::Acceleration { .. } => {
+                found.extend((0..ty.layout.n_states).map(Target::State));
+                found.extend((0..ty.layout.n_aux()).map(Target::Aux));
+            }
+            Node::Constant(_) | Node::Time => {}
+            Node::Unary(..) | Node::Binary(..) | Node::Select(..) => {}
+        }
+    }
+    found
+}
+
+/// What a transition of an agent type does to its agent: its own actions, those on leaving its mode, those on entering the target.
+pub struct Effect<'s> {
+    /// The transition's own actions.
+    pub own: &'s ActionList,
+    /// Columns that exit or entry actions write, or that it writes on some condition only.
+    pub unclear: FxHashSet<Target>,
+    /// All columns that are written.
+    pub writes: FxHashSet<Target>,
+    /// It may end the run.
+    pub stops: bool,
+}
+
+/// The effect of a transition from one leaf to another, or to itself.
+pub fn effect<'s>(ty: &'s AgentSystem, transition: &'s TransitionSystem) -> Effect<'s> {
+    let around = |mode: usize| std::iter::successors(Some(mode), |&id| ty.modes[id].parent);
+    let target = transition.target.unwrap_or(transition.source);
+    let exits = around(transition.source).map(|mode| &ty.modes[mode].exit);
+    let entries = around(ty.modes[target].initial_leaf).map(|mode| &ty.modes[mode].entry);
+    let others: Vec<&ActionList> = exits.chain(entries).collect();
+    let targets = |list: &ActionList| list.writes.iter().map(|(_, target)| *target).collect::<Vec<_>>();
+    let mut unclear: FxHashSet<Target> = others.iter().flat_map(|list| targets(list)).collect();
+    for step in &transition.actions.steps {
+        if let ActionStep::If { then, otherwise, .. } = step {
+            conditional(then, &mut unclear);
+            conditional(otherwise, &mut unclear);
+        }
+    }
+    let mut writes = unclear.clone();
+    writes.extend(targets(&transition.actions));
+    let stops = stops(&transition.actions.steps) || others.iter().any(|list| stops(&list.steps));
+    Effect { own: &transition.actions, unclear, writes, stops }
+}
+
+fn conditional(steps: &[ActionStep], found: &mut FxHashSet<Target>) {
+    for step in steps {
+        match step {
+            ActionStep::Assign { target, .. } => {
+                found.insert(*target);
+            }
+            ActionStep::If { then, otherwise, .. } => {
+                conditional(then, found);
+                conditional(otherwise, found);
+            }
+            ActionStep::Goto { .. } | ActionStep::Stop { .. } => {}
+        }
+    }
+}
+
+fn stops(steps: &[ActionStep]) -> bool {
+    steps.iter().any(|step| match step {
+        ActionStep::Stop { .. } => true,
+        ActionStep::If { then, otherwise, .. } => stops(then) || stops(otherwise),
+        ActionStep::Assign { .. } | ActionStep::Goto { .. } => false,
+    })
+}
+
+/// Transitions that have their turn before number `k` of a type while its source is active, and may lead out of it: those of modes
+/// around it, those before it in its own mode, and interactions. None if there are more than [`COMPARED_MAX`].
+pub fn before(system: &System, number: usize, k: usize) -> Option<Vec<&TransitionSystem>> {
+    let ty = &system.types[number];
+    let own = &ty.transitions[k];
+    let mut found: Vec<&TransitionSystem> = Vec::new();
+    for mode in std::iter::successors(Some(own.source), |&id| ty.modes[id].parent) {
+        let others = ty.modes[mode].transitions.iter().filter(|&&other| other != k);
+        found.extend(
+            others.map(|&other| &ty.transitions[other]).filter(|other| !comes_before(system, own, other)),
+        );
+    }
+    let pairs = system.interactions.iter().filter(|interaction| interaction.types.contains(&number));
+    found.extend(pairs.flat_map(|interaction| &interaction.transitions).map(|pair| &pair.transition));
+    (found.len() <= COMPARED_MAX).then_some(found)
+}
+
+/// Whether the first of two transitions of one agent has its turn before the second, whatever the state is.
+pub fn comes_before(system: &System, first: &TransitionSystem, second: &TransitionSystem) -> bool {
+    let priority = |transition: &TransitionSystem| match transition.priority {
+        None => Some(0.0),
+        Some(function) => system.graph.constant(system.functions[function].outputs[0]),
+    };
+    match (priority(first), priority(second)) {
+        (Some(a), Some(b)) if a == b => (first.depth, first.declaration) < (second.depth, second.declaration),
+        (Some(a), Some(b)) => a > b,
+        (None, _) | (_, None) => false,
+    }
+}
+
+/// The columns that the conditions of some transitions read.
+pub fn read_by(system: &System, ty: &AgentSystem, transitions: &[&TransitionSystem]) -> FxHashSet<Target> {
+    let guards = transitions.iter().filter_map(|transition| guard(transition));
+    guards.flat_map(|guard| reads(system, ty, &nodes(system, guard))).collect()
+}

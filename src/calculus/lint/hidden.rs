@@ -1,0 +1,41 @@
+//! Transitions that never get their turn (HY0606), because the condition of one that comes before them in their mode is always
+//! true, and leads out of it.
+//!
+//! Order is by priority, then by declaration (rule 4). Agent-level transitions are not looked at: they stay armed when the mode changes.
+
+use crate::calculus::lint::Warning;
+use crate::calculus::lint::bounds::Bounds;
+use crate::calculus::lint::effects::{COMPARED_MAX, comes_before, plain_guard};
+use crate::calculus::lint::reader::Reader;
+use crate::calculus::lint::truth::{Truth, truth};
+use crate::calculus::system::{AgentSystem, System, TransitionSystem};
+
+/// Looks at the transitions of every mode.
+pub fn transitions(system: &System, bounds: &Bounds, found: &mut Vec<Warning>) {
+    for ty in &system.types {
+        for mode in ty.modes.iter().skip(1) {
+            let own = mode.transitions.iter().take(COMPARED_MAX).map(|&k| &ty.transitions[k]);
+            let own: Vec<&TransitionSystem> = own.collect();
+            let firsts = own.iter().filter(|transition| always_leaves(system, bounds, ty, transition));
+            let firsts: Vec<&&TransitionSystem> = firsts.collect();
+            for second in &own {
+                let first = firsts.iter().find(|first| comes_before(system, first, second));
+                found.extend(first.map(|first| Warning::Hidden {
+                    label: second.label.clone(),
+                    span: second.span,
+                    by: first.label.clone(),
+                    first: first.span,
+                }));
+            }
+        }
+    }
+}
+
+/// Whether a transition leaves its mode as soon as the mode is entered.
+fn always_leaves(system: &System, bounds: &Bounds, ty: &AgentSystem, transition: &TransitionSystem) -> bool {
+    let leaves = transition.target.is_some_and(|target| target != transition.source);
+    let Some(guard) = plain_guard(transition).filter(|_| leaves) else { return false };
+    let mut reader = Reader::new(system, bounds, &transition.frame);
+    reader.stay_in(&ty.modes, transition.source);
+    truth(&mut reader, guard, &guard.condition) == Truth::Always
+}

@@ -1,0 +1,88 @@
+//! What is worth a warning, a variant per kind, each with its own code, and how each is told.
+
+use crate::base::{Diagnostic, Span};
+use crate::calculus::system::Relation;
+
+/// A question to whoever wrote the model.
+pub enum Warning {
+    /// A transition whose condition is never true, because of this part.
+    NeverTrue { label: String, part: Span, why: String, transition: Span },
+    /// A comparison that is true at single points at most.
+    OnlyTouches { text: String, span: Span, relation: Relation },
+    /// A transition that comes after one that always leaves the mode before it.
+    Hidden { label: String, span: Span, by: String, first: Span },
+    /// A transition into its own mode that would fire again at once.
+    Again { label: String, span: Span, mode: String, untouched: bool },
+    /// Two transitions, each back to the mode of the other, whose conditions hold together.
+    BothTrue { labels: [String; 2], spans: [Span; 2] },
+    /// Two transitions on one boundary, from both sides of which the flow leads back to it.
+    Chattering { labels: [String; 2], spans: [Span; 2] },
+    /// A quantifier that counts the asking agent in, for which its body is settled.
+    Oneself { name: String, ty: String, span: Span, holds: bool },
+}
+
+impl From<Warning> for Diagnostic {
+    fn from(warning: Warning) -> Self {
+        match warning {
+            Warning::NeverTrue { label, part, why, transition } => {
+                let diagnostic =
+                    Diagnostic::warning("HY0605", format!("`{label}` can never fire")).label(part, why);
+                let diagnostic =
+                    if part == transition { diagnostic } else { diagnostic.label(transition, "needs it") };
+                diagnostic.help("leave the transition out, or correct the condition")
+            }
+            Warning::OnlyTouches { text, span, relation } => only_touches(text, span, relation),
+            Warning::Hidden { label, span, by, first } => {
+                Diagnostic::warning("HY0606", format!("`{label}` never gets its turn: `{by}` comes first"))
+                    .label(span, "never fires")
+                    .label(first, "always true, and leaves the mode")
+                    .help("put it before the other one, give it a higher `priority`, or correct the condition of the other")
+            }
+            Warning::Again { label, span, mode, untouched } => {
+                let why = if untouched {
+                    "leads back into its mode and changes nothing that its condition reads"
+                } else {
+                    "leads back into its mode, where its condition is still true"
+                };
+                Diagnostic::warning("HY0607", format!("`{label}` fires again at once, without end"))
+                    .label(span, why)
+                    .note(format!("entering `{mode}` arms its transitions afresh; the run would stop with HY0505"))
+                    .help("leave the target out (without `->` it fires once, until the condition has been false), or make the condition false")
+            }
+            Warning::BothTrue { labels: [first, second], spans } => Diagnostic::warning(
+                "HY0609",
+                format!("`{first}` and `{second}` lead back and forth at one instant"),
+            )
+            .label(spans[0], "where this becomes true ...")
+            .label(spans[1], "... this is true as well, and leads back")
+            .note("the run would stop with HY0505")
+            .help("leave a gap between the two conditions, so that one is false where the other becomes true"),
+            Warning::Chattering { labels: [first, second], spans } => {
+                Diagnostic::warning("HY0610", format!("`{first}` and `{second}` chatter"))
+                    .label(spans[0], "beyond this boundary the flow leads back to it ...")
+                    .label(spans[1], "... and beyond this one, which is the same")
+                    .note("the mode would change at ever shorter intervals (HY0506, HY0507)")
+                    .help("leave a gap between the two conditions (hysteresis), or add a mode that stays on the boundary")
+            }
+            Warning::Oneself { name, ty, span, holds } => {
+                let why = if holds { "true" } else { "false" };
+                Diagnostic::warning("HY0611", format!("`{name}` ranges over the agent itself, too"))
+                    .label(span, format!("always {why} if `{name}` is `self`"))
+                    .help(format!("write `{name} in other {ty}`"))
+            }
+        }
+    }
+}
+
+fn only_touches(text: String, span: Span, relation: Relation) -> Diagnostic {
+    let (title, label) = match relation {
+        Relation::Crossing => (format!("`{text}` never happens"), "what stands here never changes its sign"),
+        Relation::NonPositive | Relation::Negative => {
+            (format!("`{text}` is true at single points only"), "never beyond the boundary, at most on it")
+        }
+    };
+    Diagnostic::warning("HY0608", title)
+        .label(span, label)
+        .note("at such a point rounding decides whether it is true")
+        .help("ask for a crossing, `crossing(x - 1)`, or for a region, `abs(x - 1) <= 0.01`")
+}

@@ -1,0 +1,69 @@
+//! Transitions that never get their turn (HY0606), because another one of their mode waits for the same condition, comes before
+//! them, and leaves the mode.
+//!
+//! The same is what stands in the text in the same words: two conditions that only have the same value in this run are no
+//! slip. Those that are always true are found in `calculus::lint`.
+
+use rustc_hash::FxHashMap;
+
+use super::Warning;
+use crate::model::context::Context;
+use crate::model::evaluate::Known;
+use crate::model::ir::{ExprId, ModeId, Transition, Trigger, TypeId};
+
+/// Looks at the transitions of every mode but the agent's own, which stay armed when the mode changes.
+pub(super) fn conditions(context: &mut Context, found: &mut Vec<Warning>) {
+    for number in 0..context.model.types.len() {
+        let ty = TypeId::new(number);
+        let mut first: FxHashMap<(ModeId, String), (f64, usize)> = FxHashMap::default();
+        for k in context.in_order(ty) {
+            let transition = &context.model.types[ty].transitions[k.1];
+            let Some(words) = context.words_of(transition) else { continue };
+            let key = (transition.source, words);
+            if let Some(&(_, by)) = first.get(&key) {
+                let by = &context.model.types[ty].transitions[by];
+                found.push(Warning::Hidden {
+                    label: transition.label.clone(),
+                    span: transition.span,
+                    by: by.label.clone(),
+                    first: by.span,
+                });
+            } else if transition.target.is_some_and(|target| target != transition.source) {
+                first.insert(key, k);
+            }
+        }
+    }
+}
+
+impl Context<'_> {
+    /// Numbers of the transitions that wait for a condition and whose priority is a constant, in the order in which they have their turn;
+    /// with their priorities.
+    fn in_order(&mut self, ty: TypeId) -> Vec<(f64, usize)> {
+        let transitions = &self.model.types[ty].transitions;
+        let waiting = transitions
+            .iter()
+            .enumerate()
+            .filter(|(_, item)| item.source.index() != 0 && matches!(item.trigger, Trigger::When(_)));
+        let priorities: Vec<(usize, Option<ExprId>)> = waiting.map(|(k, item)| (k, item.priority)).collect();
+        let mut order: Vec<(f64, usize)> = Vec::new();
+        for (k, priority) in priorities {
+            let value = match priority {
+                None => Some(0.0),
+                Some(id) if self.facts[id.index()].closed => {
+                    self.evaluator.evaluate(&self.model, id, &Known::default())
+                }
+                Some(_) => None,
+            };
+            order.extend(value.map(|value| (value, k)));
+        }
+        order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        order
+    }
+
+    /// The words of its condition, without the space between them.
+    fn words_of(&self, transition: &Transition) -> Option<String> {
+        let Trigger::When(guard) = transition.trigger else { return None };
+        let text = self.sources.text(self.model.exprs[guard].span);
+        Some(text.split_whitespace().collect::<Vec<_>>().join(" "))
+    }
+}
