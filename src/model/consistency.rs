@@ -95,8 +95,10 @@ impl Pass<'_, '_> {
             | ExprKind::AgentParam(..)
             | ExprKind::Let(..) => self.quantity_measure(self.member(id)),
             ExprKind::Apply(op, operands) => {
-                let (op, operands) = (*op, operands.clone());
-                self.operator(id, op, &operands, frame)
+                let (op, arity) = (*op, operands.len());
+                let mut all = [operands[0]; 3];
+                all[..arity].copy_from_slice(operands);
+                self.operator(id, op, &all[..arity], frame)
             }
             ExprKind::Call(function, args) => {
                 let (function, args) = (*function, args.clone());
@@ -115,7 +117,7 @@ impl Pass<'_, '_> {
             | ExprKind::Crossing(_) => Measure::Unchecked,
         };
         match self.context.quantities.get(&id) {
-            None => computed,
+            None | Some(Quantity::Of(_)) => computed,
             Some(Quantity::As(_)) => computed.named(),
             Some(Quantity::Unchecked) => Measure::Unchecked,
             Some(Quantity::Declared { dimension, .. }) => Measure::Known(*dimension),
@@ -145,6 +147,7 @@ impl Pass<'_, '_> {
             Quantity::Unchecked => Measure::Unchecked,
             Quantity::Declared { dimension, .. } => Measure::Known(dimension),
             Quantity::As(other) => self.measures[other.index()].named(),
+            Quantity::Of(other) => self.measures[other.index()],
         }
     }
 

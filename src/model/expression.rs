@@ -208,7 +208,7 @@ impl<'a> Context<'a> {
             if f64::from(constant as i32) == constant {
                 let whole = base.ty == Ty::Int && power.ty == Ty::Int && constant >= 0.0;
                 let number = self.number(constant, Ty::Int, exponent.span);
-                self.quantities.insert(number.id, Quantity::As(power.id));
+                self.quantities.insert(number.id, Quantity::Of(power.id));
                 let ty = if whole { Ty::Int } else { Ty::Real };
                 return self.apply(Op::Powi, vec![base.id, number.id], ty, span);
             }

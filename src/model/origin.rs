@@ -213,7 +213,7 @@ impl Pass<'_, '_> {
                 let text = format!("`{name}` is declared in {}", self.unit_text(place));
                 Some(Label { span: place, text })
             }
-            Quantity::As(value) => {
+            Quantity::As(value) | Quantity::Of(value) => {
                 let span = self.context.model.exprs[value].span;
                 Some(Label { span, text: format!("`{name}` is {}", in_unit(dimension)) })
             }

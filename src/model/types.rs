@@ -146,4 +146,6 @@ pub(super) enum Quantity {
     },
     /// It is a name for an expression.
     As(ExprId),
+    /// It is the value of a constant expression.
+    Of(ExprId),
 }

@@ -55,7 +55,7 @@ const FOREIGN: [(&str, &str); 16] = [
 ];
 
 /// Characters beyond the language's own that units are written with.
-const UNIT_LETTERS: [char; 6] = ['µ', 'μ', 'Ω', '\u{2126}', '°', '%'];
+pub const UNIT_LETTERS: [char; 6] = ['µ', 'μ', 'Ω', '\u{2126}', '°', '%'];
 
 /// The tokens of a text.
 pub fn scan(file: FileId, text: &str) -> Result<Vec<Token>, SyntaxError> {

@@ -30,4 +30,5 @@ mod accuracy;
 mod adams;
 mod differential;
 mod draws;
+mod units;
 mod robust;

@@ -12,7 +12,7 @@ mod expr;
 use super::ast::{Ast, Expr, ExprKind, Name, Target, Text, TypeName, UnitText};
 use super::error::SyntaxError;
 use super::grammar::{Parts, Piece, Rule};
-use super::scan::Token;
+use super::scan::{Token, UNIT_LETTERS};
 use crate::base::{FileId, Span};
 
 /// The syntax tree of a file's piece.
@@ -56,8 +56,9 @@ impl Builder<'_> {
         let span = self.span(&piece);
         let bracketed = piece.as_str();
         let text = bracketed[1..bracketed.len() - 1].trim().to_string();
-        if text.is_empty() || text.contains(|c: char| !(c.is_ascii_alphanumeric() || " _*/^.-()".contains(c)))
-        {
+        let belongs =
+            |c: char| c.is_ascii_alphanumeric() || " _*/^.-()".contains(c) || UNIT_LETTERS.contains(&c);
+        if text.is_empty() || !text.chars().all(belongs) {
             self.errors.push(SyntaxError::NotAUnit { span, text: text.clone() });
         }
         UnitText { text, span }
