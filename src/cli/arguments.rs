@@ -17,7 +17,7 @@ pub(super) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Compile a model and simulate it
-    Run(RunArguments),
+    Run(Box<RunArguments>),
     /// Say what is wrong with models
     Check(CheckArguments),
     /// Print a model at a stage of its way to the simulator
@@ -109,6 +109,9 @@ pub(super) struct OutputArguments {
     /// Write the state of every agent at the end here
     #[arg(long = "final", value_name = "FILE")]
     pub(super) final_states: Option<PathBuf>,
+    /// Say why each transition fired, and which roots were left undecided: to standard output, or here
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, default_missing_value = "-")]
+    pub(super) explain_events: Option<PathBuf>,
     /// Write counts and times here, as JSON
     #[arg(long, value_name = "FILE")]
     pub(super) stats: Option<PathBuf>,

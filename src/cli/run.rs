@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
 
     let cast = cast_of(&program);
     let mut sinks = Sinks::new(&inputs);
-    let (mut tables, stats_sink) = open_outputs(arguments, &program, &cast, &mut sinks)?;
+    let (mut tables, stats_sink) = open_outputs(arguments, &program, &cast, &sources, &mut sinks)?;
     let begun = Instant::now();
     let outcome = simulate(&program, &limits, &mut tables, arguments.quiet)?;
     let run_seconds = begun.elapsed().as_secs_f64();
@@ -121,6 +121,7 @@ fn open_outputs<'a>(
     arguments: &RunArguments,
     program: &Program,
     cast: &'a Cast,
+    sources: &'a SourceMap,
     sinks: &mut Sinks,
 ) -> Result<(Tables<'a>, Option<Sink>), Refused> {
     let wanted = &arguments.outputs;
@@ -146,6 +147,9 @@ fn open_outputs<'a>(
     }
     if let Some(path) = &wanted.final_states {
         tables.final_states(sinks.open(path)?).map_err(|error| error.to_string())?;
+    }
+    if let Some(path) = &wanted.explain_events {
+        tables.explanations(sinks.open(path)?, sources);
     }
     let stats = wanted.stats.as_deref().map(|path: &Path| sinks.open(path)).transpose()?;
     Ok((tables, stats))

@@ -40,6 +40,8 @@ pub struct Compared {
     pub span: Span,
     /// In the words of the source, shortened.
     pub text: String,
+    /// The agents that quantifiers bind around it: `o = cars[3]`; empty for none.
+    pub bound: String,
     /// The value on the left, SI; for `crossing(e)` that of e.
     pub left: f64,
     /// The value on the right, SI; for `crossing(e)` zero.
@@ -63,7 +65,8 @@ impl Compared {
     /// ``x <= 3`: 5 on the left, 3 on the right`, in SI.
     pub fn numbers(&self) -> String {
         let [left, right] = [self.left, self.right].map(number_text);
-        format!("`{}`: {left} on the left, {right} on the right", self.text)
+        let bound = if self.bound.is_empty() { String::new() } else { format!(" for {}", self.bound) };
+        format!("`{}`{bound}: {left} on the left, {right} on the right", self.text)
     }
 }
 
@@ -95,7 +98,8 @@ impl Program {
         let g = self.functions[atom.value].outputs[0];
         let Some(Sides { left, sign, right }) = atom.sides else {
             let left = self.values(&[g], point)[&g];
-            return Compared { span: atom.span, text: atom.text.clone(), left, right: 0.0, margin: f64::NAN };
+            let (text, bound) = (atom.text.clone(), String::new());
+            return Compared { span: atom.span, text, bound, left, right: 0.0, margin: f64::NAN };
         };
         let values = self.values(&[left, right], point);
         let text = |id| short(&self.graph, self.names(point), id);
@@ -109,6 +113,7 @@ impl Program {
         Compared {
             span: atom.span,
             text: format!("{} {sign} {}", text(left), text(right)),
+            bound: String::new(),
             left: values[&left],
             right: values[&right],
             margin,

@@ -11,6 +11,7 @@ mod cast;
 mod event_log;
 mod trajectory;
 mod final_states;
+mod explanations;
 mod tables;
 mod report;
 mod statistics;

@@ -4,10 +4,12 @@ use std::io;
 
 use super::cast::Cast;
 use super::event_log::EventLog;
+use super::explanations::Explanations;
 use super::final_states::FinalStates;
 use super::table::Sink;
 use super::trajectory::Trajectory;
-use crate::runtime::observe::{Event, Last, Observer, Progress, Row};
+use crate::base::SourceMap;
+use crate::runtime::observe::{Event, Explanation, Last, Observer, Progress, Row, Undecided};
 
 /// The observer that writes tables. Begin with [`Tables::new`], add what is wanted, end with [`Tables::flush`].
 pub struct Tables<'a> {
@@ -15,6 +17,7 @@ pub struct Tables<'a> {
     event_log: Option<EventLog>,
     trajectories: Vec<Trajectory>,
     final_states: Option<FinalStates>,
+    explanations: Option<Explanations<'a>>,
     on_progress: Box<dyn FnMut(&Progress) + 'a>,
 }
 
@@ -26,6 +29,7 @@ impl<'a> Tables<'a> {
             event_log: None,
             trajectories: Vec::new(),
             final_states: None,
+            explanations: None,
             on_progress: Box::new(|_| {}),
         }
     }
@@ -48,6 +52,11 @@ impl<'a> Tables<'a> {
         Ok(())
     }
 
+    /// Adds the text that says why each transition fired; its places are in `sources`.
+    pub fn explanations(&mut self, sink: Sink, sources: &'a SourceMap) {
+        self.explanations = Some(Explanations::new(sink, sources));
+    }
+
     /// Says what to do when the run tells how far it is.
     pub fn on_progress(&mut self, action: impl FnMut(&Progress) + 'a) {
         self.on_progress = Box::new(action);
@@ -59,6 +68,7 @@ impl<'a> Tables<'a> {
         results.extend(self.event_log.as_mut().map(EventLog::flush));
         results.extend(self.trajectories.iter_mut().map(Trajectory::flush));
         results.extend(self.final_states.as_mut().map(FinalStates::flush));
+        results.extend(self.explanations.as_mut().map(Explanations::flush));
         results.into_iter().collect()
     }
 }
@@ -88,5 +98,23 @@ impl Observer for Tables<'_> {
     fn progress(&mut self, progress: &Progress) -> io::Result<()> {
         (self.on_progress)(progress);
         Ok(())
+    }
+
+    fn wants_reasons(&self) -> bool {
+        self.explanations.is_some()
+    }
+
+    fn explanation(&mut self, explanation: &Explanation<'_>) -> io::Result<()> {
+        match &mut self.explanations {
+            Some(text) => text.explanation(self.cast, explanation),
+            None => Ok(()),
+        }
+    }
+
+    fn undecided(&mut self, undecided: &Undecided) -> io::Result<()> {
+        match &mut self.explanations {
+            Some(text) => text.undecided(self.cast, undecided),
+            None => Ok(()),
+        }
     }
 }

@@ -3,6 +3,7 @@ use crate::codegen::program::Atom;
 use crate::runtime::detect::AtomCurve;
 use crate::runtime::engine::{Due, Engine};
 use crate::runtime::guards::closed;
+use crate::runtime::observe::WhyUndecided;
 use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::Depth;
 use crate::runtime::solve::roots::{Curve, Known, Search, first_flip};
@@ -86,10 +87,15 @@ impl Engine<'_, '_> {
             Search::Until(until) => self.certified(index, until),
             Search::Undecided => {
                 self.n_undecided += 1;
+                let limit = self.limits.pieces_max;
+                self.note_undecided(index, from, to, WhyUndecided::TooManyPieces { limit });
                 self.certified(index, to);
             }
             Search::Flip(flip) => {
-                self.n_undecided += u64::from(flip.undecided);
+                if flip.undecided {
+                    self.n_undecided += 1;
+                    self.note_undecided(index, flip.near, flip.time, WhyUndecided::Touch);
+                }
                 let state = &mut self.guards.atoms[index];
                 state.flip = flip.time;
                 state.near = flip.near;

@@ -52,8 +52,6 @@ pub fn compare(guards: &Guards<'_>, agents: &Agents<'_>, present: &mut Present, 
         .rev()
         .map(|(binder, agent)| format!("{} = {}", frame.slots[binder.slot].name(), agents.name(*agent)))
         .collect();
-    if !bound.is_empty() {
-        compared.text.push_str(&format!(" for {}", bound.join(", ")));
-    }
+    compared.bound = bound.join(", ");
     compared
 }

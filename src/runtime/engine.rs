@@ -16,6 +16,7 @@ use crate::runtime::failure::{Failure, Place, Reason};
 use crate::runtime::groups::Groups;
 use crate::runtime::guards::{Guards, Origin, TooManyGuards};
 use crate::runtime::limits::Limits;
+use crate::runtime::notes::Notes;
 use crate::runtime::observe::{Cell, End, FalseAssert, Last, Observer, Outcome, Stats, TypeStats};
 use crate::runtime::population::Agents;
 use crate::runtime::present::{Depth, Present};
@@ -117,6 +118,8 @@ pub struct Engine<'p, 'o> {
     pub warnings: Vec<Diagnostic>,
     /// A `stop` action of this instant.
     pub stop: Option<StopRequest>,
+    /// What explanations need to know, if the observer wants them.
+    pub notes: Option<Box<Notes>>,
 }
 
 /// A `stop` action that has been executed.
@@ -156,6 +159,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             points: Vec::new(),
             registers: Vec::new(),
             queues: Queues::default(),
+            notes: observer.wants_reasons().then(|| Box::new(Notes::new(&agents))),
             firings: vec![0; guards.definitions.len()],
             events_of_type: vec![0; program.types.len()],
             agents,
@@ -180,6 +184,7 @@ impl<'p, 'o> Engine<'p, 'o> {
 
     /// Tells the observer the state of every agent at the present time (rule 12).
     pub fn tell_last(&mut self) -> Result<(), Failure> {
+        self.tell_undecided()?;
         let time = self.present.time;
         for agent in 0..self.agents.len() {
             self.present.make(&self.agents, &[agent], Depth::States);

@@ -38,6 +38,7 @@ impl Engine<'_, '_> {
     /// Executes the instant at the present time, from these candidates.
     pub fn instant(&mut self, mut candidates: Vec<Candidate>) -> Result<(), Failure> {
         self.repetitions.instant += 1;
+        self.notes.iter_mut().for_each(|notes| notes.begin());
         let mut micro = 0;
         let mut touched_agents: BTreeSet<usize> = BTreeSet::new();
         let mut concerned: Vec<u32> = candidates.iter().map(|candidate| candidate.instance).collect();
@@ -51,6 +52,9 @@ impl Engine<'_, '_> {
             let (chosen, passed) = self.choose(&candidates)?;
             let written = self.fire(&chosen, micro, &mut touched_agents)?;
             let fired: Vec<u32> = chosen.iter().map(|ranked| ranked.candidate.instance).collect();
+            if self.notes.is_some() {
+                self.explain_writes(&written, &fired);
+            }
             let woken = self.wake(&written)?;
             for &instance in &fired {
                 self.settle_fired(instance, &written);
@@ -160,6 +164,7 @@ impl Engine<'_, '_> {
         let mut effects: Vec<Effect> = Vec::with_capacity(chosen.len());
         for ranked in chosen {
             let instance = ranked.candidate.instance;
+            self.explain(ranked.candidate, micro)?;
             self.count_firing(instance)?;
             effects.push(self.effect(instance, &ranked.slots)?);
             self.guards.instances[instance as usize].armed = false;

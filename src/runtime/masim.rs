@@ -117,6 +117,7 @@ impl Engine<'_, '_> {
             events: self.n_events,
             steps: self.stepper.counts.steps,
         };
+        self.tell_undecided()?;
         Ok(self.observer.progress(&progress)?)
     }
 

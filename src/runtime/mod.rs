@@ -42,6 +42,7 @@ mod truth;
 mod detect;
 mod enclose;
 mod comparisons;
+mod notes;
 mod flow;
 mod failure;
 mod advance;
@@ -53,6 +54,7 @@ mod act;
 mod arm;
 mod instant;
 mod certify;
+mod explain;
 mod gather;
 mod masim;
 

@@ -15,6 +15,105 @@ pub trait Observer {
     fn last(&mut self, last: &Last<'_>) -> io::Result<()>;
     /// Now and then: how far the run has come.
     fn progress(&mut self, progress: &Progress) -> io::Result<()>;
+    /// Whether it wants to be told why transitions fire. Asked once, before the run.
+    fn wants_reasons(&self) -> bool {
+        false
+    }
+    /// Why a transition fires; comes before its event.
+    fn explanation(&mut self, _explanation: &Explanation<'_>) -> io::Result<()> {
+        Ok(())
+    }
+    /// A root that could be neither excluded nor isolated.
+    fn undecided(&mut self, _undecided: &Undecided) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Why a transition fired.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Explanation<'a> {
+    /// s.
+    pub time: f64,
+    /// Number of the micro-step in its instant, from 0.
+    pub micro: usize,
+    /// `Car.left`, `Bump.pair`.
+    pub transition: &'a str,
+    /// The agent; in an interaction the first participant.
+    pub agent: usize,
+    /// The other participant of an interaction.
+    pub other: Option<usize>,
+    /// Where the transition stands.
+    pub span: Span,
+    /// What made it fire.
+    pub cause: Cause,
+    /// The comparisons of its guard; of very many those that tell most.
+    pub shown: Vec<ShownComparison>,
+}
+
+/// What made a transition fire.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cause {
+    /// The flow, or the time, took its guard to where it is true.
+    Flow,
+    /// Its guard was true when its mode was entered (or at t = 0).
+    Entry,
+    /// Its delay was over.
+    After {
+        /// s.
+        delay: f64,
+    },
+    /// Its period had passed once more.
+    Every {
+        /// s.
+        period: f64,
+    },
+    /// What these transitions wrote in the micro-step before made its guard true.
+    Write {
+        /// Their labels.
+        by: Vec<String>,
+    },
+}
+
+/// A comparison just before an instant and at it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShownComparison {
+    /// Just before; none where that says nothing (a delay was over, a mode was entered).
+    pub before: Option<Compared>,
+    /// On the state that the transition read.
+    pub now: Compared,
+}
+
+/// A root that could be neither excluded nor isolated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Undecided {
+    /// The stretch of time in question, s.
+    pub from: f64,
+    /// s.
+    pub to: f64,
+    /// The label of the transition; none for an invariant or an assert.
+    pub transition: Option<String>,
+    /// The agent; in an interaction the first participant.
+    pub agent: usize,
+    /// The other participant of an interaction.
+    pub other: Option<usize>,
+    /// Where the transition or the claim stands.
+    pub span: Span,
+    /// The comparison at both ends of the stretch.
+    pub ends: [Compared; 2],
+    /// Why.
+    pub why: WhyUndecided,
+}
+
+/// Why a root was left undecided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WhyUndecided {
+    /// The comparison comes within rounding of its boundary and no further: it fires there as if it touched it.
+    Touch,
+    /// The search was given up at the limit of pieces: the comparison counts as unchanged over the stretch.
+    TooManyPieces {
+        /// `max_pieces`.
+        limit: u32,
+    },
 }
 
 /// One row of the event log.

@@ -408,3 +408,28 @@ fn help_and_version_are_fine() {
     expect(&hyc(&folder, &["run", "--help"]), 0, &["--until", "--events", "--backend"]);
     expect(&hyc(&folder, &["--version"]), 0, &[env!("CARGO_PKG_VERSION")]);
 }
+
+#[test]
+fn events_are_explained_where_one_says() {
+    let folder = folder(&[("ball.hy", BALL)]);
+    let plain = hyc(&folder, &["run", "ball.hy", "--stats", "plain.json", "--events", "plain.csv"]);
+    expect(&plain, 0, &[]);
+    let words = ["run", "ball.hy", "--explain-events=why.txt", "--stats", "s.json", "--events", "e.csv"];
+    expect(&hyc(&folder, &words), 0, &["why.txt"]);
+    let text = read(&folder, "why.txt");
+    let n_events = read(&folder, "e.csv").lines().count() - 1;
+    assert_eq!(text.matches("t = ").count(), n_events, "{text}");
+    assert!(text.contains(" of ball") && text.contains("ball.hy:"), "{text}");
+    assert_eq!(read(&folder, "e.csv"), read(&folder, "plain.csv"));
+    let without_times = |name: &str| {
+        let mut stats = json(&read(&folder, name));
+        for key in ["compile_seconds", "run_seconds"] {
+            stats[key] = serde_json::Value::Null;
+        }
+        stats
+    };
+    assert_eq!(without_times("s.json"), without_times("plain.json"));
+    let done = hyc(&folder, &["run", "ball.hy", "--explain-events"]);
+    expect(&done, 0, &[]);
+    assert_eq!(done.out, text, "the summary makes room");
+}

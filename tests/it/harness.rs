@@ -11,7 +11,10 @@ use hyc::codegen::program::Program;
 use hyc::model::ir::{Integrator, Model};
 use hyc::model::{Files, Settings};
 use hyc::runtime::limits::Limits;
-use hyc::runtime::observe::{Cell, End, FalseAssert, Last, Observer, Outcome, Progress, Row, Stats};
+use hyc::runtime::observe::{
+    Cause, Cell, End, Explanation, FalseAssert, Last, Observer, Outcome, Progress, Row, ShownComparison,
+    Stats, Undecided,
+};
 
 /// A model with what the command line says about its run.
 #[derive(Default)]
@@ -32,6 +35,25 @@ pub struct Fired {
     pub other: String,
     pub from: String,
     pub to: String,
+}
+
+/// Why a transition fired, with names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Explained {
+    pub time: f64,
+    pub micro: usize,
+    pub transition: String,
+    pub agent: String,
+    pub other: String,
+    pub cause: Cause,
+    pub shown: Vec<ShownComparison>,
+}
+
+/// Whether a run is to be explained.
+#[derive(Clone, Copy, PartialEq)]
+enum Reasons {
+    Wanted,
+    Unwanted,
 }
 
 /// A row of a trajectory.
@@ -66,6 +88,8 @@ pub enum Ended {
 pub struct Run {
     pub events: Vec<Fired>,
     pub samples: Vec<Vec<Sample>>,
+    pub explanations: Vec<Explained>,
+    pub undecided: Vec<Undecided>,
     pub finals: Vec<Final>,
     pub end: Ended,
     pub time: f64,
@@ -217,11 +241,22 @@ impl Case {
     /// Runs the model with both back ends, which must agree.
     #[track_caller]
     pub fn run_any(&self) -> Run {
+        self.run_with(Reasons::Unwanted)
+    }
+
+    /// Runs the model with both back ends, and has it explained.
+    #[track_caller]
+    pub fn run_explained(&self) -> Run {
+        self.run_with(Reasons::Wanted)
+    }
+
+    #[track_caller]
+    fn run_with(&self, reasons: Reasons) -> Run {
         let (model, system, sources) = self.system();
         let [interpreted, compiled] = [Backend::Interpreter, Backend::Jit].map(|backend| {
             let program =
                 hyc::codegen::compile(system.clone(), backend).unwrap_or_else(|found| self.fail(&[found]));
-            self.observe(&model, &program, &sources)
+            self.observe(&model, &program, &sources, reasons)
         });
         let differences = interpreted.differences(&compiled);
         assert!(differences.is_empty(), "interpreter and machine code differ:\n{differences}");
@@ -259,8 +294,8 @@ impl Case {
         }
     }
 
-    fn observe(&self, model: &Model, program: &Program, sources: &SourceMap) -> Run {
-        let mut recorder = Recorder::new(model);
+    fn observe(&self, model: &Model, program: &Program, sources: &SourceMap, reasons: Reasons) -> Run {
+        let mut recorder = Recorder::new(model, reasons);
         let outcome = hyc::runtime::simulate(program, &self.limits, &AtomicBool::new(false), &mut recorder);
         recorder.run(outcome, sources.clone())
     }
@@ -286,18 +321,30 @@ struct Recorder {
     variables: Vec<(Vec<String>, Vec<String>)>,
     events: Vec<Fired>,
     samples: Vec<Vec<Sample>>,
+    explanations: Vec<Explained>,
+    undecided: Vec<Undecided>,
     finals: Vec<Final>,
+    reasons: Reasons,
 }
 
 impl Recorder {
-    fn new(model: &Model) -> Self {
+    fn new(model: &Model, reasons: Reasons) -> Self {
         let population = &model.population;
         let agents = (0..population.agents.len()).map(|agent| population.agent_name(agent)).collect();
         let names =
             |variables: &[hyc::model::ir::Variable]| variables.iter().map(|v| v.name.clone()).collect();
         let variables = model.types.iter().map(|ty| (names(&ty.states), names(&ty.discretes))).collect();
         let samples = model.run.records.iter().map(|_| Vec::new()).collect();
-        Self { agents, variables, events: Vec::new(), samples, finals: Vec::new() }
+        Self {
+            agents,
+            variables,
+            events: Vec::new(),
+            samples,
+            explanations: Vec::new(),
+            undecided: Vec::new(),
+            finals: Vec::new(),
+            reasons,
+        }
     }
 
     fn run(self, outcome: Outcome, sources: SourceMap) -> Run {
@@ -311,6 +358,8 @@ impl Recorder {
         Run {
             events: self.events,
             samples: self.samples,
+            explanations: self.explanations,
+            undecided: self.undecided,
             finals: self.finals,
             end,
             time: outcome.time,
@@ -372,6 +421,28 @@ impl Observer for Recorder {
     }
 
     fn progress(&mut self, _progress: &Progress) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn wants_reasons(&self) -> bool {
+        self.reasons == Reasons::Wanted
+    }
+
+    fn explanation(&mut self, told: &Explanation<'_>) -> io::Result<()> {
+        self.explanations.push(Explained {
+            time: told.time,
+            micro: told.micro,
+            transition: told.transition.into(),
+            agent: self.agents[told.agent].clone(),
+            other: told.other.map_or(String::new(), |other| self.agents[other].clone()),
+            cause: told.cause.clone(),
+            shown: told.shown.clone(),
+        });
+        Ok(())
+    }
+
+    fn undecided(&mut self, told: &Undecided) -> io::Result<()> {
+        self.undecided.push(told.clone());
         Ok(())
     }
 }

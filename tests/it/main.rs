@@ -19,6 +19,7 @@ mod models;
 mod stages;
 mod rules;
 mod run_errors;
+mod explanations;
 mod instants;
 mod lints;
 mod crowds;
