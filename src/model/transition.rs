@@ -28,6 +28,8 @@ struct Guard<'a> {
 struct Labels {
     owner: String,
     taken: FxHashMap<String, Span>,
+    /// How many transitions without a label have each name.
+    counts: FxHashMap<String, usize>,
 }
 
 /// Fills in every interaction.
@@ -272,9 +274,9 @@ impl Labels {
             None => format!("{owner}.{source}#{ordinal}"),
         };
         let mut full = plain.clone();
-        let mut count = 1;
+        let count = self.counts.entry(plain.clone()).or_insert(1);
         while self.taken.contains_key(&full) {
-            count += 1;
+            *count += 1;
             full = format!("{plain}#{count}");
         }
         self.taken.insert(full.clone(), item.span);

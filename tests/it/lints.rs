@@ -8,6 +8,8 @@ use hyc::base::{Diagnostic, SourceMap};
 use hyc::model::{Files, Settings};
 use hyc::{calculus, model, syntax};
 
+use crate::harness::simulate_error;
+
 /// Data files beside the model.
 struct Beside(PathBuf);
 
@@ -180,6 +182,14 @@ fn of_agent_with_params(parts: &str) -> Vec<&'static str> {
     ))
 }
 
+/// The code with which a run of the agent with these parts ends, which must be in error.
+#[track_caller]
+fn end_of(parts: &str) -> &'static str {
+    let text =
+        format!("agent A(p: real) {{ {parts} }}  system {{ a = A[2](p = index) }}  run {{ until 10 }}");
+    simulate_error(&text).1.code
+}
+
 #[test]
 fn conditions_that_the_states_can_make_true_are_no_dead_ones() {
     let alive = [
@@ -295,11 +305,11 @@ fn transitions_into_their_own_mode_fire_again_only_if_their_condition_is_still_t
         "t: when x >= 1 or x <= -1 -> M { n := 1 }",
         "t: when x >= 1 -> M { n := n + 1 }  later: when n >= 5 -> N",
         "far: when x >= 5 -> N  t: when x <= 1 -> M { x := x - 1 }",
-        "t: when exists o in other A: o.x >= 2 -> M",
         "t: when time >= 3 -> M { x := 0 }",
     ];
     for transition in again {
         assert_eq!(of_agent(&modes(transition)), ["HY0607"], "{transition}");
+        assert_eq!(end_of(&modes(transition)), "HY0505", "{transition}");
     }
     let once = [
         "t: when x >= 1 -> M { x := 0 }",
@@ -311,6 +321,7 @@ fn transitions_into_their_own_mode_fire_again_only_if_their_condition_is_still_t
         "t: when x >= 1 { n := n + 1 }",
         "t: when rising(x >= 1) -> M",
         "t: when crossing(x - 1) -> M",
+        "t: when exists o in other A: o.x >= 2 -> M",
         "t: after 1 when x >= 1 -> M",
         "t: every 1 when x >= 1 -> M",
         "t: when time >= next -> M { next := next + 1 }",
@@ -346,6 +357,9 @@ fn opposite_conditions_are_told_from_those_that_only_look_so() {
     for (there, back) in both {
         assert_eq!(of_agent(&modes(there, back)), ["HY0609"], "{there:?} {back:?}");
     }
+    for (there, back) in &both[..4] {
+        assert_eq!(end_of(&modes(*there, *back)), "HY0505", "{there:?} {back:?}");
+    }
     let chattering = [
         (["1", "x >= 1"], ["-1", "x <= 1"]),
         (["2 - x", "x >= 1"], ["-x", "1 >= x"]),
@@ -355,6 +369,7 @@ fn opposite_conditions_are_told_from_those_that_only_look_so() {
     ];
     for (there, back) in chattering {
         assert_eq!(of_agent(&modes(there, back)), ["HY0610"], "{there:?} {back:?}");
+        assert_eq!(end_of(&modes(there, back)), "HY0505", "{there:?} {back:?}");
     }
     let fine = [
         // a gap

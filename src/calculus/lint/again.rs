@@ -2,12 +2,12 @@
 //! on within one instant.
 //!
 //! Certain if the actions write nothing that the condition reads; or if every comparison, computed from what they write, is at least as
-//! true as before: its g is not above what it was, or below zero whatever the state is. Not reported if they may end the run, or
+//! true as before: its g is not above what it was, or below zero whatever the state is. Not reported if the condition reads other agents, if the actions may end the run, or
 //! if they write what a transition reads that has its turn before and may lead out, unless that one is certainly false then.
 
 use rustc_hash::FxHashMap;
 
-use crate::calculus::graph::Node;
+use crate::calculus::graph::{Node, NodeId};
 use crate::calculus::lint::Warning;
 use crate::calculus::lint::bounds::{Bounds, REAL};
 use crate::calculus::lint::effects::{Effect, before, effect, guard, nodes, plain_guard, read_by, reads};
@@ -39,10 +39,11 @@ fn fires_again(system: &System, bounds: &Bounds, number: usize, k: usize) -> Opt
     let transition = &ty.transitions[k];
     let guard = plain_guard(transition)?;
     let effect = effect(ty, transition);
-    if effect.stops {
+    let roots = nodes(system, guard);
+    if effect.stops || reads_others(system, &roots) {
         return None;
     }
-    let read = reads(system, ty, &nodes(system, guard));
+    let read = reads(system, ty, &roots);
     let untouched = effect.writes.is_disjoint(&read);
     let mut kept = Kept::new(system, bounds, transition, guard, &effect);
     if !untouched && (!effect.unclear.is_disjoint(&read) || !kept.condition(&guard.condition)) {
@@ -57,6 +58,12 @@ fn fires_again(system: &System, bounds: &Bounds, number: usize, k: usize) -> Opt
         !(unmoved || certain && kept.keeps_false(other))
     });
     (!leads_out).then_some(untouched)
+}
+
+/// Whether a condition reads other agents, which may do something at the same instant.
+fn reads_others(system: &System, roots: &[NodeId]) -> bool {
+    let graph = &system.graph;
+    graph.reach(roots).into_iter().any(|id| graph.node(id).slot().is_some_and(|slot| slot > 0))
 }
 
 /// Compares the condition after the actions with that before them.

@@ -61,7 +61,7 @@ impl From<Warning> for Diagnostic {
                 Diagnostic::warning("HY0610", format!("`{first}` and `{second}` chatter"))
                     .label(spans[0], "beyond this boundary the flow leads back to it ...")
                     .label(spans[1], "... and beyond this one, which is the same")
-                    .note("the mode would change at ever shorter intervals (HY0506, HY0507)")
+                    .note("the mode would change without end on the boundary, and the run stop with HY0505")
                     .help("leave a gap between the two conditions (hysteresis), or add a mode that stays on the boundary")
             }
             Warning::Oneself { name, ty, span, holds } => {

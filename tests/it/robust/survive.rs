@@ -109,6 +109,7 @@ fn go(number: u64, text: &str, library: &Library, interrupt: &AtomicBool) -> Fat
     let mut files = Shelf { library, number };
     let checked = hyc::model::check(&tree, &mut sources, &mut files, &settings(number));
     draw(&sources, &checked.diagnostics);
+    draw(&sources, &checked.warnings);
     let Some(model) = checked.model else {
         assert!(checked.diagnostics.iter().any(Diagnostic::is_error), "refused without an error");
         return Fate::Refused;
@@ -117,6 +118,7 @@ fn go(number: u64, text: &str, library: &Library, interrupt: &AtomicBool) -> Fat
         Ok(system) => system,
         Err(found) => return refused(&sources, &found, Fate::Underivable),
     };
+    draw(&sources, &hyc::calculus::lint(&system));
     let backend = if number.is_multiple_of(2) { Backend::Jit } else { Backend::Interpreter };
     let program = match hyc::codegen::compile(system, backend) {
         Ok(program) => program,
