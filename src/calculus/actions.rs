@@ -1,7 +1,7 @@
 //! Lists of actions: right-hand sides as functions, tests as guards, and what may be written.
 
 use crate::base::Span;
-use crate::calculus::build;
+use crate::calculus::aggregate;
 use crate::calculus::condition::Sense;
 use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
@@ -65,14 +65,14 @@ fn assign(
     span: Span,
     name: &str,
 ) -> Result<ActionStep, Error> {
-    let slot = match build::value(draft, scope, Scope::TOP, agent)? {
+    let slot = match aggregate::value(draft, scope, Scope::TOP, agent)? {
         Value::Agent(AgentRef::Slot(slot)) => slot,
         Value::Agent(AgentRef::Link { .. } | AgentRef::Absent) | Value::Number(_) | Value::Delayed(..) => {
             unreachable!("the model lets only self and participants be written")
         }
     };
     let (target, written) = target(draft, scope, slot, variable);
-    let node = match build::number(draft, scope, Scope::TOP, value) {
+    let node = match aggregate::number(draft, scope, Scope::TOP, value) {
         Err(Error::QuantifierInNumber { .. }) if draft.model.exprs[value].ty == Type::Bool => {
             let condition = test(draft, scope, value, name)?;
             let outcomes =

@@ -1,7 +1,7 @@
 //! Agent types and interactions, part by part: modes, claims, transitions, lets.
 
 use crate::calculus::actions;
-use crate::calculus::build;
+use crate::calculus::aggregate;
 use crate::calculus::condition::Sense;
 use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
@@ -198,7 +198,7 @@ fn trigger(
 }
 
 fn number(draft: &mut Draft, scope: &mut Scope, expr: ExprId, name: &str) -> Result<FunctionId, Error> {
-    let node = build::number(draft, scope, Scope::TOP, expr)?;
+    let node = aggregate::number(draft, scope, Scope::TOP, expr)?;
     Ok(draft.function(|| name.to_owned(), vec![node]))
 }
 

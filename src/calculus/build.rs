@@ -14,22 +14,37 @@ use crate::calculus::system::{Layout, Slot};
 use crate::math::Op;
 use crate::model::ir::{ExprId, ExprKind, FunctionId, Mode, ModeId, Type, TypeId};
 
+/// Why an expression is not lowered.
+#[derive(Debug)]
+pub enum Halt {
+    /// It cannot be.
+    Failed(Error),
+    /// This aggregate has to be known first.
+    Aggregate(EnvId, ExprId),
+}
+
+impl From<Error> for Halt {
+    fn from(error: Error) -> Self {
+        Halt::Failed(error)
+    }
+}
+
 /// Why an expression cannot be lowered at once.
 enum Wait {
     /// Another one comes first.
     For(EnvId, ExprId),
-    /// It cannot be lowered.
-    Failed(Error),
+    /// It has to wait for somebody else.
+    Halted(Halt),
 }
 
 impl From<Error> for Wait {
     fn from(error: Error) -> Self {
-        Wait::Failed(error)
+        Wait::Halted(error.into())
     }
 }
 
 /// Lowers a number or a boolean without quantifiers.
-pub fn number(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> Result<NodeId, Error> {
+pub fn number(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> Result<NodeId, Halt> {
     match value(draft, scope, env, expr)? {
         Value::Number(node) => Ok(node),
         Value::Agent(_) | Value::Delayed(..) => unreachable!("the model is typed"),
@@ -37,7 +52,7 @@ pub fn number(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) ->
 }
 
 /// Lowers any expression without quantifiers.
-pub fn value(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> Result<Value, Error> {
+pub fn value(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> Result<Value, Halt> {
     let mut stack = vec![(env, expr)];
     let mut waiting: FxHashSet<(EnvId, ExprId)> = stack.iter().copied().collect();
     while let Some(&(env, expr)) = stack.last() {
@@ -57,7 +72,7 @@ pub fn value(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> 
                     stack.push((inner_env, inner));
                     continue;
                 }
-                Err(Wait::Failed(error)) => return Err(error),
+                Err(Wait::Halted(halt)) => return Err(halt),
             }
         }
         waiting.remove(&(env, expr));
@@ -67,9 +82,9 @@ pub fn value(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> 
 }
 
 /// Lowers one expression whose operands are known.
-fn step(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> Result<Value, Wait> {
+fn step(draft: &mut Draft, scope: &mut Scope, env: EnvId, id: ExprId) -> Result<Value, Wait> {
     let model = draft.model;
-    let expr = &model.exprs[expr];
+    let expr = &model.exprs[id];
     let span = expr.span;
     let node = match &expr.kind {
         ExprKind::Number(x) => draft.graph.number(*x),
@@ -138,6 +153,7 @@ fn step(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> Resul
             }
         }
         ExprKind::Quantifier { .. } => return Err(Error::QuantifierInNumber { span }.into()),
+        ExprKind::Aggregate { .. } => return Err(Wait::Halted(Halt::Aggregate(env, id))),
         ExprKind::Rising(_) | ExprKind::Crossing(_) => {
             unreachable!("the model lets these stand in guards only")
         }
@@ -262,7 +278,7 @@ pub fn open_call(
     env: EnvId,
     function: FunctionId,
     arguments: &[ExprId],
-) -> Result<(EnvId, ExprId), Error> {
+) -> Result<(EnvId, ExprId), Halt> {
     let model = draft.model;
     let mut values = Vec::with_capacity(arguments.len());
     for &argument in arguments {
@@ -279,7 +295,7 @@ fn present(draft: &mut Draft, scope: &Scope, agent: AgentRef) -> NodeId {
     match agent {
         AgentRef::Absent => draft.graph.number(0.0),
         AgentRef::Slot(slot) => match scope.frame.slots[slot] {
-            Slot::Root { .. } => draft.graph.number(1.0),
+            Slot::Root { .. } | Slot::Fold { .. } => draft.graph.number(1.0),
             Slot::Link { from, link, .. } => present(draft, scope, AgentRef::Link { from, link }),
         },
         AgentRef::Link { .. } => {
@@ -295,7 +311,7 @@ fn agent_number(draft: &mut Draft, scope: &Scope, agent: AgentRef) -> NodeId {
     match agent {
         AgentRef::Absent => draft.graph.number(-1.0),
         AgentRef::Slot(slot) => match scope.frame.slots[slot] {
-            Slot::Root { .. } => draft.graph.intern(aux(slot, Layout::NUMBER)),
+            Slot::Root { .. } | Slot::Fold { .. } => draft.graph.intern(aux(slot, Layout::NUMBER)),
             Slot::Link { from, link, .. } => agent_number(draft, scope, AgentRef::Link { from, link }),
         },
         AgentRef::Link { from, link } => {

@@ -6,6 +6,7 @@
 use crate::base::Span;
 use crate::calculus::condition::{Cond, DEPTH_MAX, Lowering, PARTS_MAX, Sense, Written};
 use crate::calculus::error::Error;
+use crate::calculus::extremes::Slope;
 use crate::calculus::graph::{Node, NodeId};
 use crate::calculus::jumps;
 use crate::calculus::system::{Relation, Slot};
@@ -46,6 +47,13 @@ impl Lowering<'_, '_> {
             let node = graph.binary(op, a, b);
             return self.test(node, Sense::Positive, span);
         }
+        if let Some(number) = self.extreme(a) {
+            return self.by_members(number, Slope::Rising, |this, term| this.less(relation, term, b, span));
+        }
+        if let Some(number) = self.extreme(b) {
+            return self.by_members(number, Slope::Falling, |this, term| this.less(relation, a, term, span));
+        }
+        let graph = &mut self.draft.graph;
         if let Some((relation, a, b)) = jumps::whole_number(graph, relation, a, b) {
             return self.less(relation, a, b, span);
         }
@@ -72,7 +80,16 @@ impl Lowering<'_, '_> {
             let zero = graph.number(0.0);
             return self.less(relation, g, zero, span);
         }
-        let Some(&choice) = jumps::choices(graph, g).last() else { return self.atom(relation, g, span) };
+        let Some(&choice) = jumps::choices(graph, g).last() else {
+            return match self.monotone_in(g) {
+                Some((number, leaf, slope)) => self.by_members(number, slope, |this, term| {
+                    let graph = &mut this.draft.graph;
+                    let (g, zero) = (jumps::replaced(graph, g, leaf, term), graph.number(0.0));
+                    this.less(relation, g, zero, span)
+                }),
+                None => self.atom(relation, g, span),
+            };
+        };
         let Node::Select(c, u, v) = graph.node(choice) else { unreachable!("a choice is a select") };
         let (then, otherwise) = (jumps::replaced(graph, g, choice, u), jumps::replaced(graph, g, choice, v));
         let (holds, fails) =

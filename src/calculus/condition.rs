@@ -9,10 +9,10 @@ use crate::base::Span;
 use crate::calculus::build;
 use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
-use crate::calculus::frame::{AgentRef, EnvId, Scope, Value};
+use crate::calculus::frame::{EnvId, Scope, Value};
 use crate::calculus::graph::NodeId;
 use crate::calculus::jumps;
-use crate::calculus::system::{Relation, Sides};
+use crate::calculus::system::{Range, Relation, Sides};
 use crate::math::Op;
 use crate::model::ir::{ExprId, ExprKind, Quantifier, Type};
 
@@ -49,17 +49,6 @@ pub struct Written {
     pub sides: Option<Sides>,
 }
 
-/// What a quantifier ranges over.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
-    /// The slot it binds.
-    pub slot: usize,
-    /// The type.
-    pub ty: usize,
-    /// Without self.
-    pub other: bool,
-}
-
 /// Whether a condition or its negation is lowered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sense {
@@ -80,12 +69,19 @@ impl Sense {
 
 /// Lowers a boolean expression.
 pub fn lower(draft: &mut Draft, scope: &mut Scope, expr: ExprId, sense: Sense) -> Result<Cond, Error> {
+    lower_in(draft, scope, Scope::TOP, expr, sense)
+}
+
+/// Lowers a boolean expression in an environment.
+pub fn lower_in(
+    draft: &mut Draft,
+    scope: &mut Scope,
+    env: EnvId,
+    expr: ExprId,
+    sense: Sense,
+) -> Result<Cond, Error> {
     let span = draft.model.exprs[expr].span;
-    Lowering { draft, scope, span, sides: None, parts: 0, depth: 0, quantifiers: 0 }.lower(
-        Scope::TOP,
-        expr,
-        sense,
-    )
+    Lowering { draft, scope, span, sides: None, parts: 0, depth: 0, quantifiers: 0 }.lower(env, expr, sense)
 }
 
 pub(super) struct Lowering<'d, 'm> {
@@ -101,7 +97,8 @@ pub(super) struct Lowering<'d, 'm> {
 }
 
 impl Lowering<'_, '_> {
-    fn lower(&mut self, env: EnvId, expr: ExprId, sense: Sense) -> Result<Cond, Error> {
+    /// A boolean expression.
+    pub fn lower(&mut self, env: EnvId, expr: ExprId, sense: Sense) -> Result<Cond, Error> {
         self.depth += 1;
         if self.depth > DEPTH_MAX {
             return Err(Error::ConditionTooDeep { limit: DEPTH_MAX, span: self.span });
@@ -131,7 +128,7 @@ impl Lowering<'_, '_> {
                     Value::Agent(_) => unreachable!("the model is typed"),
                 },
                 ExprKind::Call(function, arguments) => {
-                    let (inner, body) = build::open_call(self.draft, self.scope, env, *function, arguments)?;
+                    let (inner, body) = self.open_call(env, *function, arguments)?;
                     return self.lower(inner, body, sense);
                 }
                 ExprKind::Let(agent, k) => {
@@ -158,22 +155,12 @@ impl Lowering<'_, '_> {
                 | ExprKind::NoAgent
                 | ExprKind::Link(..)
                 | ExprKind::State(..)
+                | ExprKind::Aggregate { .. }
                 | ExprKind::Rate(..) => {
                     let node = self.number(env, expr)?;
                     return self.test(node, sense, span);
                 }
             }
-        }
-    }
-
-    fn number(&mut self, env: EnvId, expr: ExprId) -> Result<NodeId, Error> {
-        build::number(self.draft, self.scope, env, expr)
-    }
-
-    fn agent(&mut self, env: EnvId, expr: ExprId) -> Result<AgentRef, Error> {
-        match build::value(self.draft, self.scope, env, expr)? {
-            Value::Agent(agent) => Ok(agent),
-            Value::Number(_) | Value::Delayed(..) => unreachable!("the model is typed"),
         }
     }
 
@@ -251,7 +238,7 @@ impl Lowering<'_, '_> {
         let ExprKind::Quantifier { kind, binder, set, other, filter, body } = &model.exprs[expr].kind else {
             unreachable!("called for quantifiers only")
         };
-        let slot = self.scope.bind(model.binders[*binder].name.clone(), *set, span)?;
+        let slot = self.scope.bind(model.binders[*binder].name.clone(), *set, *other, span)?;
         if env == Scope::TOP && self.quantifiers == 0 {
             self.scope.witnesses.insert(*binder, slot);
         }
@@ -265,9 +252,9 @@ impl Lowering<'_, '_> {
             }
         };
         self.quantifiers += 1;
-        let (filter_sense, op) = match kind {
-            Quantifier::Exists => (Sense::Positive, Op::And),
-            Quantifier::Forall => (Sense::Negative, Op::Or),
+        let filter_sense = match kind {
+            Quantifier::Exists => Sense::Positive,
+            Quantifier::Forall => Sense::Negative,
         };
         let mut terms = Vec::new();
         if let Some(filter) = filter {
@@ -275,14 +262,16 @@ impl Lowering<'_, '_> {
         }
         terms.push(self.lower(inner, *body, sense)?);
         self.quantifiers -= 1;
-        let body = self.join(op, terms);
-        Ok(match (kind, &body) {
+        Ok(self.over(kind, Range { slot, ty: set.index(), other: *other }, terms))
+    }
+
+    /// All of these conditions for one agent of a range, or one of them for every agent.
+    pub fn over(&mut self, kind: Quantifier, range: Range, terms: Vec<Cond>) -> Cond {
+        let body = self.join(joined_by(kind), terms);
+        match (kind, &body) {
             (Quantifier::Exists, Cond::Constant(false)) | (Quantifier::Forall, Cond::Constant(true)) => body,
-            _ => {
-                let range = Range { slot, ty: set.index(), other: *other };
-                Cond::Quantified(kind, range, Box::new(body))
-            }
-        })
+            _ => Cond::Quantified(kind, range, Box::new(body)),
+        }
     }
 
     fn rising(&mut self, env: EnvId, condition: ExprId, sense: Sense, span: Span) -> Result<Cond, Error> {
@@ -345,6 +334,14 @@ fn sides(op: Op, a: NodeId, b: NodeId, exchanged: bool) -> Sides {
     };
     let (left, right) = if exchanged { (b, a) } else { (a, b) };
     Sides { left, sign, right }
+}
+
+/// What joins the conditions below a quantifier.
+fn joined_by(kind: Quantifier) -> Op {
+    match kind {
+        Quantifier::Exists => Op::And,
+        Quantifier::Forall => Op::Or,
+    }
 }
 
 /// An event holds at an instant; its negation would hold nearly always.

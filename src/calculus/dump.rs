@@ -206,7 +206,12 @@ struct Block<'a> {
 impl<'a> Block<'a> {
     fn new(system: &'a System, frame: &'a Frame) -> Self {
         let names = Names { types: &system.types, frame };
-        Self { system, names, functions: Vec::new(), lines: String::new() }
+        let mut block = Self { system, names, functions: Vec::new(), lines: String::new() };
+        for fold in &frame.folds {
+            block.add_guard(&fold.filter);
+            block.functions.extend(fold.term.as_ref().map(|term| term.rates));
+        }
+        block
     }
 
     fn add_guard(&mut self, guard: &Guard) {
@@ -251,7 +256,30 @@ impl<'a> Block<'a> {
         let _ = writeln!(self.lines, "{:indent$}{text}", "");
     }
 
+    /// The aggregates of the frame, each with its filter and the rates of its term.
+    fn folds(&mut self, sheet: &Sheet) {
+        for fold in &self.names.frame.folds {
+            let mut text = self.names.frame.slots[fold.slot].name().to_owned();
+            if !matches!(fold.filter.condition, Condition::Constant(true)) {
+                let _ =
+                    write!(text, " where {}", self.condition(sheet, &fold.filter, &fold.filter.condition, 0));
+            }
+            if let Some(term) = &fold.term {
+                let _ = write!(text, ": {}", self.value(sheet, term.value));
+            }
+            self.line(6, text);
+            self.atoms(sheet, &fold.filter.atoms, 8);
+            if let Some(term) = &fold.term {
+                let outputs = self.system.functions[term.rates].outputs.iter().skip(1);
+                for (primes, &output) in ["' ", "''"].iter().zip(outputs) {
+                    self.line(8, format!("{primes} = {}", sheet.text(output)));
+                }
+            }
+        }
+    }
+
     fn close(mut self, sheet: &Sheet, out: &mut String) {
+        self.folds(sheet);
         for explanation in sheet.explanations() {
             self.line(6, format!("where {explanation}"));
         }

@@ -1,7 +1,7 @@
 //! The equations of a leaf mode: rates with their kinks locked, second rates, the Jacobian, who is coupled.
 
 use crate::base::Span;
-use crate::calculus::build;
+use crate::calculus::build::{self, Halt};
 use crate::calculus::derive;
 use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
@@ -19,7 +19,10 @@ pub fn flow(draft: &mut Draft, ty: TypeId, leaf: ModeId, name: &str) -> Result<F
     scope.equations = Some(exprs.clone());
     let mut plain = Vec::with_capacity(exprs.len());
     for &expr in &exprs {
-        plain.push(build::number(draft, &mut scope, Scope::TOP, expr)?);
+        plain.push(build::number(draft, &mut scope, Scope::TOP, expr).map_err(|halt| match halt {
+            Halt::Failed(error) => error,
+            Halt::Aggregate(..) => unreachable!("the model lets no aggregate stand in a flow"),
+        })?);
     }
     let (rates, kinks) = kinks::lock(draft, &mut scope, ty.index(), &plain, name);
     let accelerations: Vec<NodeId> =

@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 use crate::base::Span;
 use crate::calculus::error::Error;
 use crate::calculus::graph::NodeId;
-use crate::calculus::system::{Frame, Slot};
+use crate::calculus::system::{Frame, Range, Slot};
 use crate::model::ir::{BinderId, ExprId, Model, TypeId};
 
 /// How many agents one frame may read (HY0304).
@@ -57,6 +57,17 @@ pub struct Env {
     pub bound: Vec<(BinderId, usize)>,
 }
 
+/// The inside of an aggregate.
+#[derive(Clone, Copy, Debug)]
+pub struct Folded {
+    /// The environment in which its agent is bound.
+    pub inner: EnvId,
+    /// Which agents belong to it; none: all.
+    pub filter: Option<ExprId>,
+    /// What is folded; none for `count`.
+    pub term: Option<NodeId>,
+}
+
 /// See the head of this file.
 #[derive(Debug, Default)]
 pub struct Scope {
@@ -71,6 +82,10 @@ pub struct Scope {
     pub witnesses: FxHashMap<BinderId, usize>,
     /// In a flow: the equations of the leaf, by state.
     pub equations: Option<Vec<ExprId>>,
+    /// What the agents in slots of quantifiers range over.
+    pub bound: FxHashMap<usize, Range>,
+    /// For each aggregate what it folds and where.
+    pub folded: Vec<Folded>,
     /// Where a node was first met.
     pub spans: FxHashMap<NodeId, Span>,
 }
@@ -115,8 +130,10 @@ impl Scope {
     }
 
     /// A slot for an agent that a quantifier binds.
-    pub fn bind(&mut self, name: String, ty: TypeId, span: Span) -> Result<usize, Error> {
-        self.add(Slot::Root { ty: ty.index(), name }, span)
+    pub fn bind(&mut self, name: String, ty: TypeId, other: bool, span: Span) -> Result<usize, Error> {
+        let slot = self.add(Slot::Root { ty: ty.index(), name }, span)?;
+        self.bound.insert(slot, Range { slot, ty: ty.index(), other });
+        Ok(slot)
     }
 
     /// The environment `env` with a name more, bound to a slot.
@@ -146,7 +163,8 @@ impl Scope {
         Ok(Some(slot))
     }
 
-    fn add(&mut self, slot: Slot, span: Span) -> Result<usize, Error> {
+    /// Adds a slot.
+    pub fn add(&mut self, slot: Slot, span: Span) -> Result<usize, Error> {
         if self.frame.slots.len() >= SLOTS_MAX {
             return Err(Error::TooManySlots { limit: SLOTS_MAX, span });
         }

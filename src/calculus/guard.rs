@@ -7,7 +7,7 @@ use crate::calculus::error::Error;
 use crate::calculus::frame::Scope;
 use crate::calculus::graph::{Graph, Node, NodeId};
 use crate::calculus::print::{self, Names};
-use crate::calculus::system::{Atom, Condition, Frame, Guard, Quantified, Relation};
+use crate::calculus::system::{Atom, Condition, Frame, Guard, Quantified, Relation, Slot};
 use crate::math::Op;
 use crate::model::ir::{ExprId, Quantifier};
 
@@ -92,14 +92,44 @@ pub fn atom(
     let value = draft.function(|| name.to_owned(), vec![g]);
     let rates = draft.function(|| format!("{name} rates"), vec![g, first, second]);
     let reach = draft.graph.reach(&[g]);
-    let mut slots: Vec<usize> = reach.iter().filter_map(|&id| draft.graph.node(id).slot()).collect();
-    slots.sort_unstable();
-    slots.dedup();
-    let smooth = !reach.iter().any(|&id| jumps(&draft.graph, id));
+    let (slots, folds) = slots_read(&draft.graph, frame, &reach);
+    let smooth = is_smooth(&draft.graph, frame, &reach);
     let names = Names { types: &draft.types, frame };
     let text = print::short_comparison(&draft.graph, names, relation, g);
     let Written { span, sides } = written;
-    Atom { relation, value, rates, smooth, slots, text, sides, span }
+    Atom { relation, value, rates, smooth, slots, folds, text, sides, span }
+}
+
+/// The slots of agents that nodes read, by themselves or through aggregates, and those of the aggregates; rising.
+pub fn slots_read(graph: &Graph, frame: &Frame, nodes: &[NodeId]) -> (Vec<usize>, Vec<usize>) {
+    let (mut agents, mut folds) = (Vec::new(), Vec::new());
+    for slot in nodes.iter().filter_map(|&id| graph.node(id).slot()) {
+        match &frame.slots[slot] {
+            Slot::Fold { number, .. } => {
+                folds.push(slot);
+                agents.extend(&frame.folds[*number].reads);
+            }
+            Slot::Root { .. } | Slot::Link { .. } => agents.push(slot),
+        }
+    }
+    for slots in [&mut agents, &mut folds] {
+        slots.sort_unstable();
+        slots.dedup();
+    }
+    (agents, folds)
+}
+
+/// Whether nothing among the nodes, nor among the terms of the aggregates that they read, can jump between events.
+pub fn is_smooth(graph: &Graph, frame: &Frame, nodes: &[NodeId]) -> bool {
+    nodes.iter().all(|&id| {
+        let smooth_term = match graph.node(id).slot().map(|slot| &frame.slots[slot]) {
+            Some(Slot::Fold { number, .. }) => {
+                frame.folds[*number].term.as_ref().is_none_or(|term| term.smooth)
+            }
+            Some(Slot::Root { .. } | Slot::Link { .. }) | None => true,
+        };
+        smooth_term && !jumps(graph, id)
+    })
 }
 
 /// Whether the value of a node can jump while its operands move continuously.

@@ -52,10 +52,16 @@ impl Names<'_> {
     }
 
     fn state(&self, slot: u32, column: u32, primes: &str) -> String {
+        if let Slot::Fold { name, .. } = &self.frame.slots[slot as usize] {
+            return format!("{name}{primes}");
+        }
         self.of(slot, &format!("{}{primes}", self.agent(slot).states[column as usize].name))
     }
 
     fn aux(&self, slot: u32, column: u32) -> String {
+        if let Slot::Fold { name, .. } = &self.frame.slots[slot as usize] {
+            return name.clone();
+        }
         let (agent, column) = (self.agent(slot), column as usize);
         let layout = &agent.layout;
         match column {

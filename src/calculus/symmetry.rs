@@ -188,7 +188,30 @@ impl<'a> Former<'a> {
         self.memo[&root]
     }
 
+    /// An aggregate by what it folds, as a quantifier by its body.
+    fn fold(&mut self, number: usize) -> FormId {
+        let fold = &self.frame.folds[number];
+        self.depths.insert(fold.range.slot, self.depth);
+        self.depth += 1;
+        let mut parts = vec![self.guard(&fold.filter)];
+        parts.extend(fold.term.as_ref().map(|term| self.function(term.value)));
+        self.depth -= 1;
+        self.part(fold.kind.name(), vec![fold.range.ty, usize::from(fold.range.other)], parts)
+    }
+
     fn node(&mut self, id: NodeId) -> FormId {
+        let node = self.graph.node(id);
+        if let Some(slot) = node.slot()
+            && let Slot::Fold { number, .. } = self.frame.slots[slot]
+        {
+            let fold = self.fold(number);
+            let order = match node {
+                Node::Rate { .. } => 1,
+                Node::Acceleration { .. } => 2,
+                _ => 0,
+            };
+            return self.part("aggregate", vec![order], vec![fold]);
+        }
         let form = match self.graph.node(id) {
             Node::Constant(bits) => Form::Constant(bits),
             Node::Time => Form::Time,

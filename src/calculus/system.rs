@@ -5,7 +5,8 @@
 //! number. Everything else here is structure: agent types, modes, conditions, actions, which name functions.
 //!
 //! **Slots.** A function reads agents through the slots of its [`Frame`]: slot 0 is `self` (in an interaction the
-//! first participant, slot 1 the second), then the agents bound by quantifiers, then those reached by links.
+//! first participant, slot 1 the second), then the agents bound by quantifiers, then those reached by links. An
+//! aggregate (`sum o in Car: o.x`) has a slot too, as if it were an agent with one column: see [`Fold`].
 //! **Columns.** An agent is two rows of numbers: its states, and its auxiliary columns ([`Layout`]).
 
 use std::sync::Arc;
@@ -13,7 +14,7 @@ use std::sync::Arc;
 use crate::base::{Arena, Idx, Span};
 use crate::calculus::graph::{Graph, NodeId};
 use crate::math::Scale;
-pub use crate::model::ir::{Block, Instance, Integrator, Population, Record, Run, VarRef};
+pub use crate::model::ir::{Aggregate, Block, Instance, Integrator, Population, Record, Run, VarRef};
 
 /// Names a [`Function`].
 pub type FunctionId = Idx<Function>;
@@ -45,10 +46,12 @@ pub struct Function {
 }
 
 /// The agents that a function can read.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Frame {
     /// Slot 0 first; a link's slot stands after the slot that it starts from.
     pub slots: Vec<Slot>,
+    /// The aggregates among them, each after those that it reads.
+    pub folds: Vec<Fold>,
     /// Where in the source the nodes of its functions stand, by node, rising; for messages.
     pub origins: Arc<[(NodeId, Span)]>,
 }
@@ -59,6 +62,52 @@ impl Frame {
         let found = self.origins.binary_search_by_key(&node, |&(node, _)| node);
         found.ok().map(|k| self.origins[k].1)
     }
+}
+
+/// `count`, `sum`, `min` or `max` over agents.
+///
+/// Its value is read as state 0 of its slot if a term moves, with rates; else as auxiliary column 0: then it changes only
+/// at events and where a condition of its filter changes.
+#[derive(Clone, Debug)]
+pub struct Fold {
+    /// Which.
+    pub kind: Aggregate,
+    /// Its own slot.
+    pub slot: usize,
+    /// The agents over which it goes.
+    pub range: Range,
+    /// Which of them belong to it.
+    pub filter: Guard,
+    /// What is added or compared; none for `count`.
+    pub term: Option<Term>,
+    /// Whether the term moves between events.
+    pub moves: bool,
+    /// The slots that filter and term read, those that are bound or reached within it left out; rising.
+    pub reads: Vec<usize>,
+    /// What binds those of them that are bound, outermost first.
+    pub around: Vec<Range>,
+}
+
+/// What an aggregate folds.
+#[derive(Clone, Debug)]
+pub struct Term {
+    /// One output.
+    pub value: FunctionId,
+    /// Three outputs, as those of [`Atom::rates`].
+    pub rates: FunctionId,
+    /// As [`Atom::smooth`], over all aggregates within.
+    pub smooth: bool,
+}
+
+/// Agents that a quantifier binds one after the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Range {
+    /// The slot it binds.
+    pub slot: usize,
+    /// The type.
+    pub ty: usize,
+    /// Without self (in an interaction: without both participants).
+    pub other: bool,
 }
 
 /// How the agent in a slot is found.
@@ -82,20 +131,29 @@ pub enum Slot {
         /// For listings: `lead`, `o.lead`.
         name: String,
     },
+    /// The value of an aggregate.
+    Fold {
+        /// Its number in [`Frame::folds`].
+        number: usize,
+        /// The type over which it goes.
+        ty: usize,
+        /// For listings: `sum[o in Car]`.
+        name: String,
+    },
 }
 
 impl Slot {
-    /// The agent type.
+    /// The agent type; of an aggregate that over which it goes.
     pub fn ty(&self) -> usize {
         match self {
-            Slot::Root { ty, .. } | Slot::Link { ty, .. } => *ty,
+            Slot::Root { ty, .. } | Slot::Link { ty, .. } | Slot::Fold { ty, .. } => *ty,
         }
     }
 
     /// The name for listings.
     pub fn name(&self) -> &str {
         match self {
-            Slot::Root { name, .. } | Slot::Link { name, .. } => name,
+            Slot::Root { name, .. } | Slot::Link { name, .. } | Slot::Fold { name, .. } => name,
         }
     }
 }
@@ -341,8 +399,10 @@ pub struct Atom {
     /// Whether g is continuous between events. If not (it has a floor, a sign, an `if`, an atan2, ... of something that
     /// moves), the rates hold only between its jumps: an interval of dg/dt then bounds nothing, an interval of g does.
     pub smooth: bool,
-    /// The slots that g reads (states or aux), rising.
+    /// The slots of agents that g reads (states or aux), by itself or through an aggregate, rising.
     pub slots: Vec<usize>,
+    /// The slots of the aggregates that g reads, rising.
+    pub folds: Vec<usize>,
     /// The comparison in the words of the source.
     pub text: String,
     /// What the source compares with what; none where it does not compare (`crossing(e)`, a kink).

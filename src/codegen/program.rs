@@ -5,9 +5,10 @@ use crate::calculus::graph::Graph;
 use crate::calculus::system::Function;
 pub use crate::calculus::system::FunctionId;
 pub use crate::calculus::system::{
-    ActionList, ActionStep, AgentSystem, Atom, ClaimKind, ClaimSystem, Column, Condition, Flow, Frame, Guard,
-    Integrator, InteractionSystem, Kink, KinkKind, Layout, LetSystem, LetValue, ModeSystem, PairTransition,
-    Population, Quantified, Record, Relation, Run, Slot, Target, TransitionSystem, Trigger, VarRef,
+    ActionList, ActionStep, AgentSystem, Aggregate, Atom, ClaimKind, ClaimSystem, Column, Condition, Flow,
+    Fold, Frame, Guard, Integrator, InteractionSystem, Kink, KinkKind, Layout, LetSystem, LetValue,
+    ModeSystem, PairTransition, Population, Quantified, Range, Record, Relation, Run, Slot, Target, Term,
+    TransitionSystem, Trigger, VarRef,
 };
 use crate::codegen::kernel::{Kernel, StepKernel};
 

@@ -1,14 +1,14 @@
-//! Calls: the functions of the language, those of the file, and quantifiers.
+//! Calls: the functions of the language and those of the file.
 
-use super::context::{Context, Global, GlobalKind, Home, Meaning, Scope, Value};
+use super::context::{Context, Global, GlobalKind, Meaning, Scope, Value};
 use super::error::{ModeError, NameError, TypeError};
 use super::expression::join_numbers;
-use super::ir::{Binder, ExprKind, FunctionId, Quantifier};
+use super::ir::{ExprKind, FunctionId};
 use super::suggest::closest;
 use super::types::Ty;
 use crate::base::Span;
 use crate::math::Op;
-use crate::syntax::ast::{self, QuantifierKind};
+use crate::syntax::ast;
 
 /// The type of what a function of the language gives.
 #[derive(Clone, Copy)]
@@ -198,63 +198,5 @@ impl<'a> Context<'a> {
         let wrong = values.iter().any(|value| value.ty == Ty::Wrong);
         let ty = if wrong { Ty::Wrong } else { signature.result.ty };
         self.push(ExprKind::Call(function, values.iter().map(|value| value.id).collect()), ty, span)
-    }
-
-    /// `exists o in other Car where p: q`.
-    pub fn lower_quantifier(
-        &mut self,
-        scope: &mut Scope<'a>,
-        item: &'a ast::Quantifier,
-        span: Span,
-    ) -> Value {
-        let (name, kind) = match item.kind {
-            QuantifierKind::Exists => ("exists", Some(Quantifier::Exists)),
-            QuantifierKind::Forall => ("forall", Some(Quantifier::Forall)),
-            QuantifierKind::Count => ("count", None),
-            QuantifierKind::Sum => ("sum", None),
-            QuantifierKind::Min => ("min", None),
-            QuantifierKind::Max => ("max", None),
-            QuantifierKind::Nearest => ("nearest", None),
-        };
-        let Some(kind) = kind else {
-            self.refuse(format!("`{name}` quantifiers"), span);
-            return self.wrong(span);
-        };
-        if let (Some(other), Home::File | Home::Function | Home::Initial(_) | Home::Construction) =
-            (item.other, scope.home)
-        {
-            let why = "leaves out the agent that asks, and here none asks";
-            let help = "leave `other` out, and compare by `!=` with an agent that is a parameter";
-            self.report(NameError::NotHere { name: "other".to_string(), span: other, why, help });
-        }
-        if matches!(self.globals.get(item.set.text.as_str()), Some(Global { kind: GlobalKind::Instance, .. }))
-        {
-            self.refuse("quantifiers over a name of `system`", item.set.span);
-            return self.wrong(span);
-        }
-        let Some(set) = self.agent_named(&item.set) else { return self.wrong(span) };
-        let binder = self.model.binders.push(Binder {
-            name: item.binder.text.clone(),
-            ty: set,
-            span: item.binder.span,
-        });
-        scope.bound.push((&item.binder.text, binder));
-        let filter = item.filter.as_ref().map(|filter| self.lower_condition(scope, filter));
-        let body = match &item.body {
-            Some(body) => self.lower_condition(scope, body),
-            None if kind == Quantifier::Exists => self.number(1.0, Ty::Bool, span),
-            None => {
-                let (operator, found) = (name.to_string(), "all of it".to_string());
-                self.report(TypeError::Operand { operator, needs: "a condition behind `:`", found, span });
-                self.wrong(span)
-            }
-        };
-        scope.bound.pop();
-        let wrong = body.ty == Ty::Wrong || filter.is_some_and(|filter| filter.ty == Ty::Wrong);
-        let ty = if wrong { Ty::Wrong } else { Ty::Bool };
-        let filter = filter.map(|filter| filter.id);
-        let kind =
-            ExprKind::Quantifier { kind, binder, set, other: item.other.is_some(), filter, body: body.id };
-        self.push(kind, ty, span)
     }
 }

@@ -104,6 +104,8 @@ impl Pass<'_, '_> {
                 let (function, args) = (*function, args.clone());
                 self.call(id, function, &args, frame)
             }
+            ExprKind::Aggregate { term: Some(term), .. } => self.of(*term, frame).named(),
+            ExprKind::Aggregate { term: None, .. } => Measure::NUMBER,
             ExprKind::SelfAgent
             | ExprKind::Participant(_)
             | ExprKind::Bound(_)

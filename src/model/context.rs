@@ -421,6 +421,15 @@ impl<'a> Context<'a> {
                     self.let_value(*agent, *number).map_or(Facts::default(), |id| self.facts[id.index()]);
                 facts = Facts { varies: value.varies, quantified: value.quantified, ..Facts::default() };
             }
+            ExprKind::Aggregate { term, .. } => {
+                let term = term.map_or(Facts::default(), |term| self.facts[term.index()]);
+                facts = Facts {
+                    varies: term.varies,
+                    varies_with_locals: term.varies_with_locals,
+                    quantified: true,
+                    ..Facts::default()
+                };
+            }
             ExprKind::Quantifier { .. } => {
                 facts.closed = false;
                 facts.pure = false;

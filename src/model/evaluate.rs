@@ -121,6 +121,7 @@ impl Evaluator {
             | ExprKind::Same(..)
             | ExprKind::Is(..)
             | ExprKind::Quantifier { .. }
+            | ExprKind::Aggregate { .. }
             | ExprKind::Rising(_)
             | ExprKind::Crossing(_) => f64::NAN,
         };

@@ -3,7 +3,7 @@
 //! An expression that several others share is written once, as `#number`, if it is long: `let`s of interactions can double
 //! at every level.
 
-use super::ir::{ExprId, ExprKind, Model, Quantifier};
+use super::ir::{BinderId, ExprId, ExprKind, Model, Quantifier, TypeId};
 use super::operands::for_each_operand;
 use super::types::Ty;
 use crate::math::Op;
@@ -76,7 +76,9 @@ impl<'m> Formulas<'m> {
     fn level(&self, id: ExprId) -> Level {
         match &self.model.exprs[id].kind {
             ExprKind::Number(value) if *value < 0.0 => Level::Sign,
-            ExprKind::Quantifier { .. } | ExprKind::Apply(Op::Select, _) => Level::Open,
+            ExprKind::Quantifier { .. } | ExprKind::Aggregate { .. } | ExprKind::Apply(Op::Select, _) => {
+                Level::Open
+            }
             ExprKind::Same(..) | ExprKind::Is(..) => Level::Compare,
             ExprKind::Apply(op, _) => infix(*op).map_or(Level::Tight, |(level, _)| level),
             _ => Level::Tight,
@@ -149,20 +151,34 @@ impl<'m> Formulas<'m> {
                 out.push_str(ty.map_or("", |ty| self.model.types[ty].modes[*mode].path.as_str()));
             }
             ExprKind::Quantifier { kind, binder, set, other, filter, body } => {
-                out.push_str(match kind {
-                    Quantifier::Exists => "exists ",
-                    Quantifier::Forall => "forall ",
-                });
-                out.push_str(&self.model.binders[*binder].name);
-                out.push_str(if *other { " in other " } else { " in " });
-                out.push_str(&self.model.types[*set].name);
-                if let Some(filter) = filter {
-                    out.push_str(" where ");
-                    self.write(*filter, Level::Or, names, out);
-                }
-                out.push_str(": ");
-                self.write(*body, Level::Open, names, out);
+                let word = match kind {
+                    Quantifier::Exists => "exists",
+                    Quantifier::Forall => "forall",
+                };
+                out.push_str(&self.range_text(word, *binder, *set, *other));
+                self.write_quantified(*filter, Some(*body), names, out);
             }
+            ExprKind::Aggregate { kind, binder, set, other, filter, term } => {
+                out.push_str(&self.range_text(kind.name(), *binder, *set, *other));
+                self.write_quantified(*filter, *term, names, out);
+            }
+        }
+    }
+
+    /// `exists o in other Car`
+    fn range_text(&self, word: &str, binder: BinderId, set: TypeId, other: bool) -> String {
+        let (name, other) = (&self.model.binders[binder].name, if other { "other " } else { "" });
+        format!("{word} {name} in {other}{}", self.model.types[set].name)
+    }
+
+    fn write_quantified(&self, filter: Option<ExprId>, body: Option<ExprId>, names: Names, out: &mut String) {
+        if let Some(filter) = filter {
+            out.push_str(" where ");
+            self.write(filter, Level::Or, names, out);
+        }
+        if let Some(body) = body {
+            out.push_str(": ");
+            self.write(body, Level::Open, names, out);
         }
     }
 

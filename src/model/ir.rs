@@ -145,6 +145,21 @@ pub enum ExprKind {
         /// What follows the colon.
         body: ExprId,
     },
+    /// `count`, `sum`, `min` and `max` over agents.
+    Aggregate {
+        /// Which.
+        kind: Aggregate,
+        /// The name it binds.
+        binder: BinderId,
+        /// The set it ranges over: all living agents of this type ...
+        set: TypeId,
+        /// ... without `self` (in an interaction: without both participants).
+        other: bool,
+        /// `where`; for `count` also what follows the colon.
+        filter: Option<ExprId>,
+        /// What follows the colon; none for `count`.
+        term: Option<ExprId>,
+    },
     /// `rising(condition)`.
     Rising(ExprId),
     /// `crossing(real)`.
@@ -158,6 +173,31 @@ pub enum Quantifier {
     Exists,
     /// All.
     Forall,
+}
+
+/// The quantifiers that make numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Aggregate {
+    /// How many there are.
+    Count,
+    /// The sum of the terms, added in the order of the agents; 0 of none.
+    Sum,
+    /// The least term; infinite of none.
+    Min,
+    /// The greatest term; minus infinity of none.
+    Max,
+}
+
+impl Aggregate {
+    /// As it is written.
+    pub fn name(self) -> &'static str {
+        match self {
+            Aggregate::Count => "count",
+            Aggregate::Sum => "sum",
+            Aggregate::Min => "min",
+            Aggregate::Max => "max",
+        }
+    }
 }
 
 /// A name bound by a quantifier.

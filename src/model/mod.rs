@@ -25,6 +25,7 @@ mod declare;
 mod expression;
 mod resolve;
 mod call;
+mod quantifier;
 mod overrides;
 mod draw;
 mod define;

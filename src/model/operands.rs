@@ -31,6 +31,9 @@ pub(super) fn for_each_operand(kind: &ExprKind, mut each: impl FnMut(ExprId)) {
             filter.iter().for_each(|&id| each(id));
             each(*body);
         }
+        ExprKind::Aggregate { filter, term, .. } => {
+            filter.iter().chain(term).for_each(|&id| each(id));
+        }
         ExprKind::Rising(operand) | ExprKind::Crossing(operand) => each(*operand),
     }
 }

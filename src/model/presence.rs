@@ -149,9 +149,11 @@ fn needs_of(model: &Model, table: &Table, id: ExprId) -> Needs {
             };
             needs.inherit(&get(table, model.functions[*function].body), replace, expr.span);
         }
-        ExprKind::Apply(..) | ExprKind::Quantifier { .. } | ExprKind::Rising(_) | ExprKind::Crossing(_) => {
-            needs.join_all(table, &expr.kind);
-        }
+        ExprKind::Apply(..)
+        | ExprKind::Quantifier { .. }
+        | ExprKind::Aggregate { .. }
+        | ExprKind::Rising(_)
+        | ExprKind::Crossing(_) => needs.join_all(table, &expr.kind),
         ExprKind::Number(_)
         | ExprKind::Time
         | ExprKind::Local(_)

@@ -8,6 +8,7 @@ use crate::codegen::trace::{Blame, Point};
 use crate::runtime::advance::cut;
 use crate::runtime::engine::{Engine, StopRequest};
 use crate::runtime::failure::{Failure, Reason};
+use crate::runtime::fold;
 use crate::runtime::guards::Origin;
 use crate::runtime::population::Slots;
 use crate::runtime::present::Depth;
@@ -132,10 +133,11 @@ impl Engine<'_, '_> {
         for step in steps {
             match step {
                 ActionStep::Assign { slot, target, value, span } => {
-                    let number = truth::value(&self.agents, &mut self.present, *value, slots);
+                    let number =
+                        truth::value(&self.agents, &mut self.present, *value, &list.frame, slots, own);
                     let write = Write { agent: slots[*slot], target: *target, value: number, span: *span };
                     if !number.is_finite() {
-                        let blame = self.blame(*value, &list.frame, slots);
+                        let blame = self.blame(*value, &list.frame, slots, own);
                         return Err(self.action_not_finite(&write, blame).into());
                     }
                     effect.writes.push(write);
@@ -161,8 +163,18 @@ impl Engine<'_, '_> {
     }
 
     /// What makes the single output of a function not finite, on the rows of the present instant.
-    pub fn blame(&self, function: FunctionId, frame: &Frame, slots: &Slots) -> Option<Blame> {
-        let views = self.present.views(&self.agents, slots);
+    pub fn blame(
+        &mut self,
+        function: FunctionId,
+        frame: &Frame,
+        slots: &Slots,
+        own: &[usize],
+    ) -> Option<Blame> {
+        let kernel = self.program.kernel(function);
+        let folds = truth::gather(&self.agents, &mut self.present, kernel, frame, slots, own);
+        let leaves = truth::leaves(&self.agents, &mut self.present, kernel, slots, &folds);
+        let row = |agent: usize| self.present.view(&self.agents, agent);
+        let views = fold::views(slots, &leaves, &row);
         self.program.blame(function, 0, &Point { frame, slots: &views, time: self.present.time })
     }
 
@@ -348,7 +360,8 @@ impl Engine<'_, '_> {
             let flow = self.agents.flow(agent);
             for kink in &flow.kinks {
                 let slots = self.agents.slots(&flow.frame, &[agent]);
-                let lock = truth::value(&self.agents, &mut self.present, kink.initial, &slots);
+                let kernel = self.program.kernel(kink.initial);
+                let lock = truth::evaluate(&self.agents, &mut self.present, kernel, &slots, &[]);
                 self.agents.agents[agent].aux[kink.lock] = lock;
             }
         }

@@ -279,7 +279,7 @@ fn kink_time(
         let closed = atom.relation == Relation::NonPositive;
         let reach = 2.0 * f64::EPSILON * until.abs();
         let known = Known { truth, closed, slack: 0.0, settled: false, grazed: false, reach };
-        let mut curve = AtomCurve::new(agents, atom, slots, curves);
+        let mut curve = AtomCurve::new(agents, atom, slots, &[], curves);
         let mut from = start;
         loop {
             match first_flip(&mut curve, from, until, known, pieces_max) {

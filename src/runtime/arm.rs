@@ -3,14 +3,15 @@
 use rustc_hash::FxHashSet;
 
 use crate::codegen::kernel::{AgentBox, AgentView, Kernel};
-use crate::codegen::program::{Relation, Trigger};
+use crate::codegen::program::{Atom, Relation, Trigger};
 use crate::math::Interval;
 use crate::runtime::act::Written;
 use crate::runtime::engine::{Due, Engine};
 use crate::runtime::failure::{Failure, Reason};
+use crate::runtime::fold::{self, Folded};
 use crate::runtime::guards::{Origin, closed, inside};
 use crate::runtime::population::{ABSENT, Slots};
-use crate::runtime::present::{Boxes, Depth};
+use crate::runtime::present::{Boxes, Depth, Views, depth_read};
 use crate::runtime::solve::{time_resolution, ulp};
 use crate::runtime::truth::{self, Side, Truths};
 
@@ -81,10 +82,11 @@ impl<'p> Engine<'p, '_> {
             Trigger::Every { period, .. } => (*period, f64::MIN_POSITIVE),
         };
         let slots = self.guards.slots(&self.agents, instance);
-        let value = truth::value(&self.agents, &mut self.present, function, &slots);
+        let own = self.guards.roots(instance);
+        let value = truth::value(&self.agents, &mut self.present, function, &transition.frame, &slots, &own);
         let stands_still = least > 0.0 && value < time_resolution(self.present.time);
         if !(value >= least && value < f64::INFINITY) || stands_still {
-            let blame = self.blame(function, &transition.frame, &slots);
+            let blame = self.blame(function, &transition.frame, &slots, &own);
             let place = self.place(slots[0]);
             return Err(Reason::BadDelay { place, value, blame, span: transition.span }.into());
         }
@@ -116,9 +118,11 @@ impl<'p> Engine<'p, '_> {
         let absent = atom.slots.iter().any(|&slot| slots[slot] == ABSENT);
         let kernel = self.program.kernel(atom.value);
         self.curves.evaluations += 1;
-        let g = truth::value(&self.agents, &mut self.present, atom.value, &slots);
+        let folds = self.truths().gather(before.instance, kernel, &slots, Side::After);
+        let g = truth::evaluate(&self.agents, &mut self.present, kernel, &slots, &folds);
         let mut touched = false;
-        let unchanged = rule == Rule::Woken && self.value_before(kernel, &slots, written) == Some(g);
+        let unchanged =
+            rule == Rule::Woken && folds.is_empty() && self.value_before(kernel, &slots, written) == Some(g);
         let truth = if g.is_nan() || absent && !g.is_finite() {
             false
         } else if unchanged && before.rooted {
@@ -129,21 +133,24 @@ impl<'p> Engine<'p, '_> {
             before.truth
         } else {
             // Where g can jump, a bound of its rounding may be the height of the jump: then its sign is taken as it is.
-            let rounding = if atom.smooth { self.rounding(kernel, &slots) } else { 0.0 };
+            let rounding = if atom.smooth { self.rounding(kernel, &slots, &folds) } else { 0.0 };
             let clear = g.abs() > if unchanged { before.slack.max(rounding) } else { rounding };
             match rule {
-                Rule::Rates => self.decide(index, g, rounding, &slots),
+                Rule::Rates => self.decide(index, g, rounding, &slots, &folds),
                 Rule::Woken if unchanged && clear => before.truth,
                 Rule::Fresh | Rule::Woken if clear => g < 0.0,
-                Rule::Woken if unchanged => self.decide(index, g, rounding, &slots),
+                Rule::Woken if unchanged => self.decide(index, g, rounding, &slots, &folds),
                 Rule::Fresh | Rule::Woken if atom.relation == Relation::Crossing => {
-                    self.decide(index, g, rounding, &slots)
+                    self.decide(index, g, rounding, &slots, &folds)
                 }
                 Rule::Fresh | Rule::Woken => closed(atom.relation, false),
             }
         };
         if atom.relation == Relation::Crossing && rule == Rule::Woken && truth != before.truth {
             touched = true;
+        }
+        if !folds.is_empty() && !truth && atom.relation != Relation::Crossing {
+            touched = self.true_exactly_now(before.instance, atom, &slots);
         }
         let state = &mut self.guards.atoms[index];
         state.truth = truth;
@@ -152,6 +159,40 @@ impl<'p> Engine<'p, '_> {
         let kept = unchanged && before.rooted;
         self.recertify(index, if kept { before.certified.max(time) } else { time });
         self.guards.atoms[index].settled = !(unchanged && before.slack == 0.0);
+    }
+
+    /// Whether a comparison of aggregates holds with the members that they have at the very instant.
+    fn true_exactly_now(&mut self, instance: u32, atom: &Atom, slots: &Slots) -> bool {
+        let kernel = self.program.kernel(atom.value);
+        let folds = self.truths().gather(instance, kernel, slots, Side::Exact);
+        let g = truth::evaluate(&self.agents, &mut self.present, kernel, slots, &folds);
+        g < 0.0 || g.abs() <= self.rounding(kernel, slots, &folds) && closed(atom.relation, false)
+    }
+
+    /// Settles the comparisons of aggregates of an instance, some of which have other members now.
+    pub fn settle_folds(&mut self, instance: u32) {
+        for index in self.guards.atom_range(instance) {
+            let (atom, _) = self.guards.atom_slots(&self.agents, index);
+            if !atom.folds.is_empty() {
+                let before = self.guards.atoms[index];
+                self.settle(index, Rule::Rates, &Written::default());
+                let state = &mut self.guards.atoms[index];
+                let crossed = atom.relation == Relation::Crossing && state.truth != before.truth;
+                state.touched |= before.touched || crossed;
+            }
+        }
+    }
+
+    /// Whether a comparison reads something that was written.
+    pub fn reads_written(&self, index: usize, written: &Written) -> bool {
+        let (atom, slots) = self.guards.atom_slots(&self.agents, index);
+        let is_written = |agent: usize| written.before.contains_key(&agent);
+        if atom.slots.iter().any(|&slot| is_written(slots[slot])) {
+            return true;
+        }
+        let quantified = &self.guards.definition(self.guards.atoms[index].instance).quantified;
+        let may_belong = |&agent: &usize| quantified.contains(&self.agents.agents[agent].ty);
+        !atom.folds.is_empty() && written.before.keys().any(may_belong)
     }
 
     /// Has an atom certified from `time` on; what was found beyond is void.
@@ -168,12 +209,10 @@ impl<'p> Engine<'p, '_> {
     }
 
     /// Rule 3, "On the boundary": by the first of two rates that is not zero within rounding.
-    fn decide(&mut self, index: usize, g: f64, rounding: f64, slots: &Slots) -> bool {
+    fn decide(&mut self, index: usize, g: f64, rounding: f64, slots: &Slots, folds: &[Folded<'_>]) -> bool {
         let (atom, _) = self.guards.atom_slots(&self.agents, index);
-        self.present.make(&self.agents, slots, Depth::Accelerations);
         let kernel = self.program.kernel(atom.rates);
-        let mut jet = [0.0; 3];
-        kernel.eval(&self.present.views(&self.agents, slots), self.present.time, &mut jet);
+        let jet = truth::jet(&self.agents, &mut self.present, kernel, slots, folds);
         let state = &mut self.guards.atoms[index];
         // Beside a pole the rate says nothing of how near zero is.
         let by_rate =
@@ -183,7 +222,7 @@ impl<'p> Engine<'p, '_> {
             return g < 0.0;
         }
         state.slack = band;
-        let bounds = if atom.smooth { self.jet_rounding(kernel, slots) } else { [0.0; 3] };
+        let bounds = if atom.smooth { self.jet_rounding(kernel, slots, folds) } else { [0.0; 3] };
         for order in 1..3 {
             if jet[order].abs() > bounds[order] {
                 return jet[order] < 0.0;
@@ -193,21 +232,24 @@ impl<'p> Engine<'p, '_> {
     }
 
     /// What rounding may do to the single output of a kernel on the present rows.
-    fn rounding(&mut self, kernel: &Kernel, slots: &Slots) -> f64 {
+    fn rounding(&mut self, kernel: &Kernel, slots: &Slots, folds: &[Folded<'_>]) -> f64 {
         let mut out = [Interval::WHOLE];
-        self.point_range(kernel, slots, &mut out);
+        self.point_range(kernel, slots, folds, &mut out);
         width(out[0])
     }
 
-    fn jet_rounding(&mut self, kernel: &Kernel, slots: &Slots) -> [f64; 3] {
+    fn jet_rounding(&mut self, kernel: &Kernel, slots: &Slots, folds: &[Folded<'_>]) -> [f64; 3] {
         let mut out = [Interval::WHOLE; 3];
-        self.point_range(kernel, slots, &mut out);
+        self.point_range(kernel, slots, folds, &mut out);
         out.map(width)
     }
 
     /// The outputs of a kernel with the present rows as intervals without width.
-    fn point_range(&mut self, kernel: &Kernel, slots: &Slots, out: &mut [Interval]) {
-        let views = self.present.views(&self.agents, slots);
+    fn point_range(&mut self, kernel: &Kernel, slots: &Slots, folds: &[Folded<'_>], out: &mut [Interval]) {
+        let involved = fold::involved(slots, folds);
+        let absent = self.present.view(&self.agents, ABSENT);
+        let views: Views<'_> =
+            involved.iter().map(|&agent| self.present.view(&self.agents, agent)).chain([absent]).collect();
         self.points.clear();
         for view in &views {
             for row in [view.states, view.rates, view.accelerations] {
@@ -220,7 +262,7 @@ impl<'p> Engine<'p, '_> {
             rest = after;
             row
         };
-        let boxes: Boxes<'_> = views
+        let points: Boxes<'_> = views
             .iter()
             .map(|view| AgentBox {
                 states: take(view.states),
@@ -229,14 +271,17 @@ impl<'p> Engine<'p, '_> {
                 aux: view.aux,
             })
             .collect();
+        let row = |agent: usize| points[involved.binary_search(&agent).unwrap_or(involved.len())];
         let time = Interval { lo: self.present.time, hi: self.present.time };
         self.curves.ranges += 1;
-        kernel.range(&boxes, time, &mut self.registers, out);
+        let depth = depth_read(kernel);
+        let leaves = fold::leaf_ranges(self.program, folds, depth, time, &mut self.registers, &row);
+        kernel.range(&fold::boxes(slots, &leaves, &row), time, &mut self.registers, out);
     }
 
     /// The value of a kernel on the rows before the micro-step; none if a rate would be needed.
     fn value_before(&self, kernel: &Kernel, slots: &Slots, written: &Written) -> Option<f64> {
-        if truth::depth_read(kernel) != Depth::States {
+        if depth_read(kernel) != Depth::States {
             return None;
         }
         let mut views = self.present.views(&self.agents, slots);
@@ -282,9 +327,9 @@ impl<'p> Engine<'p, '_> {
             for index in self.guards.atom_range(instance) {
                 let (atom, slots) = self.guards.atom_slots(&self.agents, index);
                 let mut read = atom.slots.iter().map(|&slot| slots[slot]);
-                if !fresh && read.clone().any(is_written) {
+                if !fresh && self.reads_written(index, written) {
                     self.settle(index, Rule::Woken, written);
-                } else if read.any(is_concerned) {
+                } else if !atom.folds.is_empty() || read.any(is_concerned) {
                     let state = &self.guards.atoms[index];
                     if !state.rooted {
                         self.recertify(index, state.certified.min(self.present.time));
@@ -330,7 +375,8 @@ impl<'p> Engine<'p, '_> {
     /// Rule 2: a disarmed guard is armed again when it is next false.
     pub fn rearm(&mut self, instance: u32) {
         let state = &self.guards.instances[instance as usize];
-        if state.active && !state.armed && !self.truths().holds(instance, Side::After) {
+        // What was true at the instant is so until its end, whatever else happens in it.
+        if state.active && !state.armed && !self.truths().holds(instance, Side::At) {
             self.guards.instances[instance as usize].armed = true;
         }
     }

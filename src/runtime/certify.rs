@@ -2,13 +2,14 @@
 use crate::codegen::program::Atom;
 use crate::runtime::detect::AtomCurve;
 use crate::runtime::engine::{Due, Engine};
+use crate::runtime::fold::{self, Folded};
 use crate::runtime::guards::closed;
 use crate::runtime::observe::WhyUndecided;
 use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::Depth;
 use crate::runtime::solve::roots::{Curve, Known, Search, first_flip};
 use crate::runtime::solve::{time_resolution, ulp};
-use crate::runtime::truth::{self, depth_read};
+use crate::runtime::truth::{self, Side};
 
 /// A run without an end that gets here will not stop by itself, s.
 pub const ENDLESS: f64 = 1e15;
@@ -51,24 +52,24 @@ impl Engine<'_, '_> {
     fn certify(&mut self, index: usize, blocked: bool) {
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
         let from = self.guards.atoms[index].certified;
+        let kernel = self.program.kernel(atom.value);
+        let folds = self.truths().gather(self.guards.atoms[index].instance, kernel, &slots, Side::After);
         let mut to = self.time_end;
-        for &slot in &atom.slots {
-            if slots[slot] != ABSENT {
-                to = to.min(self.groups.groups[self.agents.agents[slots[slot]].group].clock);
-            }
+        let read = atom.slots.iter().map(|&slot| slots[slot]).filter(|&agent| agent != ABSENT);
+        for agent in read.chain(fold::members(&folds)) {
+            to = to.min(self.groups.groups[self.agents.agents[agent].group].clock);
         }
         if to == f64::INFINITY {
             // Nothing but the time is read, and the run has no end: a stretch at a time.
             to = from + from.max(1.0);
         }
-        let kernel = self.program.kernel(atom.value);
         let absent = atom.slots.iter().any(|&slot| slots[slot] == ABSENT);
-        if absent && truth::value(&self.agents, &mut self.present, atom.value, &slots).is_nan() {
+        if absent && truth::evaluate(&self.agents, &mut self.present, kernel, &slots, &folds).is_nan() {
             self.certified(index, self.time_end);
             return;
         }
-        let may_sleep = !blocked && depth_read(kernel) == Depth::States;
-        if may_sleep && let Some(until) = self.sleep(index, atom, &slots, from, to) {
+        let may_sleep = !blocked && fold::depth(self.program, kernel, &folds) == Depth::States;
+        if may_sleep && let Some(until) = self.sleep(index, (atom, &slots, &folds), from, to) {
             self.certified(index, until);
             return;
         }
@@ -81,7 +82,7 @@ impl Engine<'_, '_> {
             grazed: state.grazed == from,
             reach: if blocked { time_resolution(to) } else { 2.0 * ulp(to) },
         };
-        let mut curve = AtomCurve::new(&self.agents, atom, &slots, &mut self.curves);
+        let mut curve = AtomCurve::new(&self.agents, atom, &slots, &folds, &mut self.curves);
         match first_flip(&mut curve, from, to, known, self.limits.pieces_max) {
             Search::None => self.certified(index, to),
             Search::Until(until) => self.certified(index, until),
@@ -124,7 +125,13 @@ impl Engine<'_, '_> {
     }
 
     /// I6: how long an atom cannot change, if that is longer than its segments reach.
-    fn sleep(&mut self, index: usize, atom: &Atom, slots: &Slots, from: f64, to: f64) -> Option<f64> {
+    fn sleep(
+        &mut self,
+        index: usize,
+        (atom, slots, folds): (&Atom, &Slots, &[Folded<'_>]),
+        from: f64,
+        to: f64,
+    ) -> Option<f64> {
         let state = &mut self.guards.atoms[index];
         if state.skip > 0 {
             state.skip -= 1;
@@ -139,8 +146,9 @@ impl Engine<'_, '_> {
             if horizon <= least {
                 break;
             }
+            let groups = &self.groups.groups;
             let bound =
-                self.enclosures.value_range(&self.agents, &self.groups.groups, atom, slots, from, horizon);
+                self.enclosures.value_range(&self.agents, groups, (atom, slots, folds), from, horizon);
             if bound.is_some_and(|bound| if truth { bound.hi < 0.0 } else { bound.lo > 0.0 }) {
                 let state = &mut self.guards.atoms[index];
                 (state.stride, state.backoff) = (2.0 * horizon, 0);
@@ -148,7 +156,7 @@ impl Engine<'_, '_> {
             }
             // As far as a straight line from g here to the worst of the bound stays clear, with room.
             let here = *here.get_or_insert_with(|| {
-                AtomCurve::new(&self.agents, atom, slots, &mut self.curves).jet(from)[0]
+                AtomCurve::new(&self.agents, atom, slots, folds, &mut self.curves).jet(from)[0]
             });
             let worst = bound.map_or(f64::NAN, |bound| if truth { bound.hi } else { bound.lo });
             let share = 0.7 * here / (here - worst);

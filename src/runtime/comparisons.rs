@@ -3,10 +3,11 @@
 //! A guard over quantifiers may have thousands of comparisons; a few are enough to see why it holds.
 
 use crate::codegen::trace::{Compared, Point};
+use crate::runtime::fold;
 use crate::runtime::guards::Guards;
 use crate::runtime::population::Agents;
 use crate::runtime::present::Present;
-use crate::runtime::truth::depth_read;
+use crate::runtime::truth::{self, Side, Truths};
 
 /// How many comparisons of one guard are told.
 const TOLD_MAX: usize = 6;
@@ -42,9 +43,12 @@ pub fn told(guards: &Guards<'_>, agents: &Agents<'_>, present: &mut Present, ins
 /// One comparison on the rows of `present`, with the agents that quantifiers bind.
 pub fn compare(guards: &Guards<'_>, agents: &Agents<'_>, present: &mut Present, index: usize) -> Compared {
     let (atom, slots) = guards.atom_slots(agents, index);
-    present.make(agents, &slots, depth_read(agents.program.kernel(atom.value)));
-    let frame = guards.definition(guards.atoms[index].instance).frame;
-    let views = present.views(agents, &slots);
+    let (instance, kernel) = (guards.atoms[index].instance, agents.program.kernel(atom.value));
+    let folds = Truths { agents, guards, present: &*present }.gather(instance, kernel, &slots, Side::After);
+    let frame = guards.definition(instance).frame;
+    let leaves = truth::leaves(agents, present, kernel, &slots, &folds);
+    let row = |agent: usize| present.view(agents, agent);
+    let views = fold::views(&slots, &leaves, &row);
     let mut compared = agents.program.compared(atom, &Point { frame, slots: &views, time: present.time });
     let (_, bound) = guards.bindings(agents, index);
     let bound: Vec<String> = bound

@@ -3,8 +3,9 @@
 use crate::codegen::kernel::{AgentBox, AgentView};
 use crate::codegen::program::Atom;
 use crate::math::Interval;
+use crate::runtime::fold::{self, Folded};
 use crate::runtime::population::{ABSENT, Agents, Slots};
-use crate::runtime::present::{Boxes, Views};
+use crate::runtime::present::{Boxes, Depth, Views};
 use crate::runtime::solve::roots::Curve;
 
 /// Scratch rows for evaluating along segments; three rows (x, x', x'') for each slot.
@@ -34,20 +35,122 @@ pub struct AtomCurve<'a, 'p> {
     agents: &'a Agents<'p>,
     atom: &'a Atom,
     slots: &'a Slots,
+    folds: &'a [Folded<'a>],
+    /// The agents that are read, if there are aggregates; rising.
+    involved: Vec<usize>,
     rows: &'a mut CurveRows,
     width: usize,
 }
 
 impl<'a, 'p> AtomCurve<'a, 'p> {
-    /// The curve of an atom over the last segments of the agents in its slots.
-    pub fn new(agents: &'a Agents<'p>, atom: &'a Atom, slots: &'a Slots, rows: &'a mut CurveRows) -> Self {
-        let width = atom.slots.iter().map(|&slot| n_states(agents, slots[slot])).max().unwrap_or(0);
-        let total = 3 * width * slots.len();
+    /// The curve of an atom over the last segments of the agents in its slots and of the members of its aggregates.
+    pub fn new(
+        agents: &'a Agents<'p>,
+        atom: &'a Atom,
+        slots: &'a Slots,
+        folds: &'a [Folded<'a>],
+        rows: &'a mut CurveRows,
+    ) -> Self {
+        let involved = if folds.is_empty() { Vec::new() } else { fold::involved(slots, folds) };
+        let read = atom.slots.iter().map(|&slot| slots[slot]).chain(involved.iter().copied());
+        let width = read.map(|agent| n_states(agents, agent)).max().unwrap_or(0);
+        let total = 3 * width * slots.len().max(involved.len());
         if rows.numbers.len() < total {
             rows.numbers.resize(total, 0.0);
             rows.boxes.resize(total, Interval::WHOLE);
         }
-        Self { agents, atom, slots, rows, width }
+        Self { agents, atom, slots, folds, involved, rows, width }
+    }
+
+    /// The jet of an atom with aggregates.
+    fn folded_jet(&mut self, t: f64) -> [f64; 3] {
+        let (agents, width) = (self.agents, self.width);
+        for (k, &agent) in self.involved.iter().enumerate() {
+            let (x, rest) = self.rows.numbers[3 * width * k..3 * width * (k + 1)].split_at_mut(width);
+            let (dx, ddx) = rest.split_at_mut(width);
+            agents.agents[agent].segment.jet(t, x, dx, ddx);
+        }
+        let row = |agent: usize| {
+            let Ok(k) = self.involved.binary_search(&agent) else {
+                let row = self.rows.absent.as_slice();
+                return AgentView { states: row, rates: row, accelerations: row, aux: row };
+            };
+            let rows = &self.rows.numbers[3 * width * k..3 * width * (k + 1)];
+            AgentView {
+                states: &rows[..width],
+                rates: &rows[width..2 * width],
+                accelerations: &rows[2 * width..],
+                aux: &agents.agents[agent].aux,
+            }
+        };
+        let leaves = fold::leaves(agents.program, self.folds, Depth::Accelerations, t, &row);
+        let mut out = [0.0; 3];
+        let kernel = agents.program.kernel(self.atom.rates);
+        kernel.eval(&fold::views(self.slots, &leaves, &row), t, &mut out);
+        out
+    }
+
+    /// Bounds of the jet of an atom with aggregates.
+    fn folded_range(&mut self, time: Interval) -> [Interval; 3] {
+        let (agents, width) = (self.agents, self.width);
+        let CurveRows { boxes, registers, absent, absent_box, .. } = &mut *self.rows;
+        for (k, &agent) in self.involved.iter().enumerate() {
+            let (x, rest) = boxes[3 * width * k..3 * width * (k + 1)].split_at_mut(width);
+            let (dx, ddx) = rest.split_at_mut(width);
+            agents.agents[agent].segment.jet_range(time.lo, time.hi, x, dx, ddx);
+        }
+        let row = |agent: usize| {
+            let Ok(k) = self.involved.binary_search(&agent) else {
+                let row = absent_box.as_slice();
+                return AgentBox { states: row, rates: row, accelerations: row, aux: absent };
+            };
+            let rows = &boxes[3 * width * k..3 * width * (k + 1)];
+            AgentBox {
+                states: &rows[..width],
+                rates: &rows[width..2 * width],
+                accelerations: &rows[2 * width..],
+                aux: &agents.agents[agent].aux,
+            }
+        };
+        let depth = Depth::Accelerations;
+        let leaves = fold::leaf_ranges(agents.program, self.folds, depth, time, registers, &row);
+        let mut out = [Interval::WHOLE; 3];
+        let kernel = agents.program.kernel(self.atom.rates);
+        kernel.range(&fold::boxes(self.slots, &leaves, &row), time, registers, &mut out);
+        out
+    }
+
+    /// Bounds of the jet of an atom without aggregates.
+    fn plain_range(&mut self, time: Interval, out: &mut [Interval; 3]) {
+        let width = self.width;
+        if width > 0 {
+            let mut chunks = self.rows.boxes.chunks_exact_mut(3 * width);
+            for (slot, chunk) in (0..self.slots.len()).zip(&mut chunks) {
+                let agent = self.slots[slot];
+                if agent != ABSENT && self.atom.slots.contains(&slot) {
+                    let (x, rest) = chunk.split_at_mut(width);
+                    let (dx, ddx) = rest.split_at_mut(width);
+                    self.agents.agents[agent].segment.jet_range(time.lo, time.hi, x, dx, ddx);
+                }
+            }
+        }
+        let boxes: Boxes<'_> = (0..self.slots.len())
+            .map(|slot| {
+                let agent = self.slots[slot];
+                if agent == ABSENT {
+                    let row = self.rows.absent_box.as_slice();
+                    return AgentBox { states: row, rates: row, accelerations: row, aux: &self.rows.absent };
+                }
+                let rows = &self.rows.boxes[3 * width * slot..3 * width * (slot + 1)];
+                AgentBox {
+                    states: &rows[..width],
+                    rates: &rows[width..2 * width],
+                    accelerations: &rows[2 * width..],
+                    aux: &self.agents.agents[agent].aux,
+                }
+            })
+            .collect();
+        self.agents.program.kernel(self.atom.rates).range(&boxes, time, &mut self.rows.registers, out);
     }
 }
 
@@ -58,6 +161,9 @@ fn n_states(agents: &Agents<'_>, agent: usize) -> usize {
 impl Curve for AtomCurve<'_, '_> {
     fn jet(&mut self, t: f64) -> [f64; 3] {
         self.rows.evaluations += 1;
+        if !self.folds.is_empty() {
+            return self.folded_jet(t);
+        }
         let width = self.width;
         if width > 0 {
             let mut chunks = self.rows.numbers.chunks_exact_mut(3 * width);
@@ -97,37 +203,13 @@ impl Curve for AtomCurve<'_, '_> {
 
     fn jet_range(&mut self, s: f64, e: f64) -> [Interval; 3] {
         self.rows.ranges += 1;
-        let width = self.width;
-        if width > 0 {
-            let mut chunks = self.rows.boxes.chunks_exact_mut(3 * width);
-            for (slot, chunk) in (0..self.slots.len()).zip(&mut chunks) {
-                let agent = self.slots[slot];
-                if agent != ABSENT && self.atom.slots.contains(&slot) {
-                    let (x, rest) = chunk.split_at_mut(width);
-                    let (dx, ddx) = rest.split_at_mut(width);
-                    self.agents.agents[agent].segment.jet_range(s, e, x, dx, ddx);
-                }
-            }
-        }
-        let boxes: Boxes<'_> = (0..self.slots.len())
-            .map(|slot| {
-                let agent = self.slots[slot];
-                if agent == ABSENT {
-                    let row = self.rows.absent_box.as_slice();
-                    return AgentBox { states: row, rates: row, accelerations: row, aux: &self.rows.absent };
-                }
-                let rows = &self.rows.boxes[3 * width * slot..3 * width * (slot + 1)];
-                AgentBox {
-                    states: &rows[..width],
-                    rates: &rows[width..2 * width],
-                    accelerations: &rows[2 * width..],
-                    aux: &self.agents.agents[agent].aux,
-                }
-            })
-            .collect();
         let mut out = [Interval::WHOLE; 3];
         let time = Interval { lo: s, hi: e };
-        self.agents.program.kernel(self.atom.rates).range(&boxes, time, &mut self.rows.registers, &mut out);
+        if !self.folds.is_empty() {
+            out = self.folded_range(time);
+        } else {
+            self.plain_range(time, &mut out);
+        }
         if !self.atom.smooth && s < e {
             // The rates hold between the jumps of g only, and bound nothing across one.
             (out[1], out[2]) = (Interval::WHOLE, Interval::WHOLE);

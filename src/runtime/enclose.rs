@@ -10,9 +10,10 @@ use smallvec::SmallVec;
 use crate::codegen::kernel::AgentBox;
 use crate::codegen::program::Atom;
 use crate::math::Interval;
+use crate::runtime::fold::{self, Folded};
 use crate::runtime::groups::Group;
 use crate::runtime::population::{ABSENT, Agent, Agents, Slots};
-use crate::runtime::present::Boxes;
+use crate::runtime::present::{Boxes, Depth};
 use crate::runtime::solve::control::Accuracy;
 
 /// Bounds of rates of groups, kept for those who ask again.
@@ -69,15 +70,17 @@ impl Enclosures {
         &mut self,
         agents: &Agents<'_>,
         groups: &[Group],
-        atom: &Atom,
-        slots: &Slots,
+        (atom, slots, folds): (&Atom, &Slots, &[Folded<'_>]),
         t: f64,
         horizon: f64,
     ) -> Option<Interval> {
         let mut places: SmallVec<[(usize, usize, usize); 3]> = SmallVec::new();
         self.boxes.clear();
-        for &slot in &atom.slots {
-            let agent = slots[slot];
+        let mut read: SmallVec<[usize; 3]> = atom.slots.iter().map(|&slot| slots[slot]).collect();
+        read.extend(fold::members(folds));
+        read.sort_unstable();
+        read.dedup();
+        for agent in read {
             if agent == ABSENT || agents.agents[agent].states.is_empty() {
                 continue;
             }
@@ -87,31 +90,27 @@ impl Enclosures {
             let first: usize = before.map(|&member| agents.agents[member].states.len()).sum();
             let n = agents.agents[agent].states.len();
             let rates: SmallVec<[Interval; 8]> = self.kept[group][kept].rates[first..first + n].into();
-            places.push((slot, self.boxes.len(), n));
+            places.push((agent, self.boxes.len(), n));
             self.add_box(&agents.agents[agent], &rates, t, horizon);
         }
-        let boxes: Boxes<'_> = (0..slots.len())
-            .map(|slot| {
-                let agent = slots[slot];
-                if agent == ABSENT {
-                    let row = self.absent.as_slice();
-                    return AgentBox { states: row, rates: row, accelerations: row, aux: &self.absent_aux };
-                }
-                let states = match places.iter().find(|place| place.0 == slot) {
-                    Some(&(_, first, n)) => &self.boxes[first..first + n],
-                    None => &[],
-                };
-                AgentBox { states, rates: &[], accelerations: &[], aux: &agents.agents[agent].aux }
-            })
-            .collect();
-        let mut out = [Interval::WHOLE];
         self.ranges += 1;
-        agents.program.kernel(atom.value).range(
-            &boxes,
-            Interval { lo: t, hi: t + horizon },
-            &mut self.registers,
-            &mut out,
-        );
+        let Self { registers, boxes, absent, absent_aux, .. } = self;
+        let row = |agent: usize| {
+            if agent == ABSENT {
+                let row = absent.as_slice();
+                return AgentBox { states: row, rates: row, accelerations: row, aux: absent_aux };
+            }
+            let states = match places.binary_search_by_key(&agent, |place| place.0) {
+                Ok(k) => &boxes[places[k].1..places[k].1 + places[k].2],
+                Err(_) => &[],
+            };
+            AgentBox { states, rates: &[], accelerations: &[], aux: &agents.agents[agent].aux }
+        };
+        let time = Interval { lo: t, hi: t + horizon };
+        let leaves = fold::leaf_ranges(agents.program, folds, Depth::States, time, registers, &row);
+        let mut out = [Interval::WHOLE];
+        let kernel = agents.program.kernel(atom.value);
+        kernel.range(&fold::boxes(slots, &leaves, &row), time, registers, &mut out);
         Some(out[0])
     }
 

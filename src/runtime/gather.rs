@@ -75,9 +75,17 @@ impl Engine<'_, '_> {
         }
         self.present.go(time);
         let mut concerned: Vec<u32> = Vec::new();
+        let mut refold: Vec<u32> = Vec::new();
         for (index, root) in changed {
             self.flip(index, root);
-            concerned.push(self.guards.atoms[index].instance);
+            let instance = self.guards.atoms[index].instance;
+            concerned.push(instance);
+            if self.guards.is_of_filter(index) && refold.last() != Some(&instance) {
+                refold.push(instance);
+            }
+        }
+        for instance in refold {
+            self.settle_folds(instance);
         }
         let mut candidates = Vec::new();
         for due in now {
@@ -187,7 +195,9 @@ impl Engine<'_, '_> {
     fn flip(&mut self, index: usize, root: f64) {
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
         let time = self.present.time;
-        let jet = { AtomCurve::new(&self.agents, atom, &slots, &mut self.curves).jet(time) };
+        let kernel = self.program.kernel(atom.value);
+        let folds = self.truths().gather(self.guards.atoms[index].instance, kernel, &slots, Side::After);
+        let jet = { AtomCurve::new(&self.agents, atom, &slots, &folds, &mut self.curves).jet(time) };
         let state = &mut self.guards.atoms[index];
         state.touched = match atom.relation {
             Relation::NonPositive => state.truth,

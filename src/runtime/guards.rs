@@ -1,83 +1,15 @@
 //! Guard instances: each transition and each claim for each agent or pair that it can bind, with flags and atoms.
 //!
-//! A *definition* is what the program says once; an *instance* is a definition with its agents; an *atom instance* is a
-//! comparison of an instance with, below quantifiers, one binding. Atom instances lie in one list: those of an instance
+//! An *instance* is a definition with its agents; an *atom instance* is a comparison of an instance with, below
+//! quantifiers, one binding. Atom instances lie in one list: those of an instance
 //! together, and of each atom in the order of the agents its quantifiers bind.
 
 use smallvec::SmallVec;
 
-use crate::codegen::program::{
-    Atom, ClaimSystem, Condition, Frame, Guard, Layout, PairTransition, Quantified, Relation,
-    TransitionSystem, Trigger,
-};
+use crate::codegen::program::{Atom, Layout, Quantified, Range, Relation};
+pub use crate::runtime::definition::Origin;
+use crate::runtime::definition::{AtomShape, Definition, definitions};
 use crate::runtime::population::{Agents, Slots};
-
-/// What a definition comes from.
-#[derive(Clone, Copy, Debug)]
-pub enum Origin<'p> {
-    /// A transition of an agent type.
-    Transition(&'p TransitionSystem),
-    /// A transition of an interaction.
-    Pair(&'p PairTransition),
-    /// An invariant or an assert.
-    Claim(&'p ClaimSystem),
-}
-
-impl<'p> Origin<'p> {
-    /// The transition, of an agent type or of an interaction; none for a claim.
-    pub fn transition(self) -> Option<&'p TransitionSystem> {
-        match self {
-            Origin::Transition(transition) => Some(transition),
-            Origin::Pair(pair) => Some(&pair.transition),
-            Origin::Claim(_) => None,
-        }
-    }
-}
-
-/// A guard as the program says it.
-#[derive(Clone, Debug)]
-pub struct Definition<'p> {
-    /// Where it comes from.
-    pub origin: Origin<'p>,
-    /// The type of the first agent.
-    pub ty: usize,
-    /// The mode in which it is active; 0: in all.
-    pub mode: usize,
-    /// Its slots.
-    pub frame: &'p Frame,
-    /// Its condition; none: true.
-    pub guard: Option<&'p Guard>,
-    /// Per atom.
-    pub atoms: Vec<AtomShape>,
-    /// How many atom instances an instance has.
-    pub n_atoms: usize,
-    /// Per `rising`: where its flags begin, the binders around it.
-    pub rising: Vec<AtomShape>,
-    /// How many `rising` flags an instance has.
-    pub n_rising: usize,
-    /// The types that quantifiers range over, and those reached from bound agents by links.
-    pub quantified: Vec<usize>,
-}
-
-/// Where the instances of an atom lie, and what binds them.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct AtomShape {
-    /// The first, counted from the instance's first.
-    pub first: usize,
-    /// The quantifiers around it, outermost first.
-    pub binders: Vec<Binder>,
-}
-
-/// What binds an agent above an atom.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Binder {
-    /// The slot that it fills.
-    pub slot: usize,
-    /// The type over which it ranges.
-    pub ty: usize,
-    /// Whether it leaves out the instance's own agents.
-    pub other: bool,
-}
 
 /// An instance of a definition.
 #[derive(Clone, Debug)]
@@ -284,18 +216,17 @@ impl<'p> Guards<'p> {
         if !bound.is_empty() {
             agents.follow_links(definition.frame, &mut slots);
         }
-        let guard = definition.guard.expect("an atom belongs to a guard");
-        (&guard.atoms[atom], slots)
+        (definition.comparisons[atom], slots)
     }
 
     /// The atom of an atom instance, and the agents that the quantifiers around it bind, innermost first.
-    pub fn bindings(&self, agents: &Agents<'_>, index: usize) -> (usize, SmallVec<[(Binder, usize); 2]>) {
+    pub fn bindings(&self, agents: &Agents<'_>, index: usize) -> (usize, SmallVec<[(Range, usize); 2]>) {
         let instance = self.atoms[index].instance;
         let shapes = &self.definition(instance).atoms;
         let offset = index - self.instances[instance as usize].atoms as usize;
         let atom = shapes.partition_point(|shape| shape.first <= offset) - 1;
         let mut rest = offset - shapes[atom].first;
-        let agent = |&binder: &Binder| {
+        let agent = |&binder: &Range| {
             let of_type = &agents.of_type[binder.ty];
             let agent = of_type[rest % of_type.len()];
             rest /= of_type.len();
@@ -311,6 +242,14 @@ impl<'p> Guards<'p> {
         bound.iter().any(|(binder, agent)| binder.other && roots.contains(agent))
     }
 
+    /// Whether an atom instance belongs to the filter of an aggregate.
+    pub fn is_of_filter(&self, index: usize) -> bool {
+        let instance = self.atoms[index].instance;
+        let definition = self.definition(instance);
+        let offset = index - self.instances[instance as usize].atoms as usize;
+        definition.atoms.get(definition.base).map_or(definition.base > 0, |first| offset < first.first)
+    }
+
     /// The range of an instance's atom instances.
     pub fn atom_range(&self, instance: u32) -> std::ops::Range<usize> {
         let first = self.instances[instance as usize].atoms as usize;
@@ -320,7 +259,7 @@ impl<'p> Guards<'p> {
 
 /// The rank of the bindings in `slots` among all bindings.
 fn place(agents: &Agents<'_>, shape: &AtomShape, slots: &Slots) -> usize {
-    shape.binders.iter().fold(0, |place, &Binder { slot, ty, .. }| {
+    shape.binders.iter().fold(0, |place, &Range { slot, ty, .. }| {
         place * agents.of_type[ty].len() + agents.agents[slots[slot]].rank
     })
 }
@@ -350,112 +289,6 @@ pub fn inside(agents: &Agents<'_>, agent: usize, mode: usize) -> bool {
         at = modes[number].parent;
     }
     false
-}
-
-fn definitions<'p>(agents: &Agents<'p>) -> Vec<Definition<'p>> {
-    let program = agents.program;
-    let mut definitions = Vec::new();
-    for (ty, system) in program.types.iter().enumerate() {
-        for transition in &system.transitions {
-            let guard = match &transition.trigger {
-                Trigger::When(guard) => Some(guard),
-                Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
-            };
-            let origin = Origin::Transition(transition);
-            definitions.push(define(agents, origin, ty, transition.source, &transition.frame, guard));
-        }
-        for (mode, node) in system.modes.iter().enumerate() {
-            for claim in &node.claims {
-                let guard = Some(&claim.violation);
-                definitions.push(define(agents, Origin::Claim(claim), ty, mode, &claim.frame, guard));
-            }
-        }
-    }
-    for interaction in &program.interactions {
-        for pair in &interaction.transitions {
-            let guard = match &pair.transition.trigger {
-                Trigger::When(guard) => Some(guard),
-                Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
-            };
-            let frame = &pair.transition.frame;
-            definitions.push(define(agents, Origin::Pair(pair), interaction.types[0], 0, frame, guard));
-        }
-    }
-    definitions
-}
-
-fn define<'p>(
-    agents: &Agents<'p>,
-    origin: Origin<'p>,
-    ty: usize,
-    mode: usize,
-    frame: &'p Frame,
-    guard: Option<&'p Guard>,
-) -> Definition<'p> {
-    let (n_atom, n_rising) = guard.map_or((0, 0), |guard| (guard.atoms.len(), guard.n_rising));
-    let mut binders =
-        Binders { atoms: vec![Vec::new(); n_atom], rising: vec![Vec::new(); n_rising], around: Vec::new() };
-    let mut quantified = Vec::new();
-    if let Some(guard) = guard {
-        binders.walk(&guard.condition);
-        if binders.quantifies(&guard.condition) {
-            let own = if matches!(origin, Origin::Pair(_)) { 2 } else { 1 };
-            quantified = frame.slots[own..].iter().map(|slot| slot.ty()).collect();
-            quantified.sort_unstable();
-            quantified.dedup();
-        }
-    }
-    let lay_out = |lists: Vec<Vec<Binder>>| {
-        let mut first = 0;
-        let mut shapes = Vec::new();
-        for binders in lists {
-            let n: usize = binders.iter().map(|binder| agents.of_type[binder.ty].len()).product();
-            shapes.push(AtomShape { first, binders });
-            first += n;
-        }
-        (shapes, first)
-    };
-    let (atoms, n_atoms) = lay_out(binders.atoms);
-    let (rising, n_rising) = lay_out(binders.rising);
-    Definition { origin, ty, mode, frame, guard, atoms, n_atoms, rising, n_rising, quantified }
-}
-
-/// Finds the quantifiers around each atom.
-struct Binders {
-    atoms: Vec<Vec<Binder>>,
-    rising: Vec<Vec<Binder>>,
-    around: Vec<Binder>,
-}
-
-impl Binders {
-    fn walk(&mut self, condition: &Condition) {
-        match condition {
-            Condition::Constant(_) | Condition::Discrete(_) => {}
-            Condition::Atom(atom) => self.atoms[*atom] = self.around.clone(),
-            Condition::And(all) | Condition::Or(all) => all.iter().for_each(|condition| self.walk(condition)),
-            Condition::Exists(quantified) | Condition::Forall(quantified) => {
-                let Quantified { slot, ty, other, .. } = *quantified;
-                self.around.push(Binder { slot, ty, other });
-                self.walk(&quantified.body);
-                self.around.pop();
-            }
-            Condition::Rising(number, condition) => {
-                self.rising[*number] = self.around.clone();
-                self.walk(condition);
-            }
-        }
-    }
-
-    fn quantifies(&self, condition: &Condition) -> bool {
-        match condition {
-            Condition::Constant(_) | Condition::Discrete(_) | Condition::Atom(_) => false,
-            Condition::And(all) | Condition::Or(all) => {
-                all.iter().any(|condition| self.quantifies(condition))
-            }
-            Condition::Exists(_) | Condition::Forall(_) => true,
-            Condition::Rising(_, condition) => self.quantifies(condition),
-        }
-    }
 }
 
 /// How many entries the instances of a definition take: themselves and their atoms.

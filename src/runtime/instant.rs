@@ -14,7 +14,7 @@ use crate::runtime::guards::Origin;
 use crate::runtime::observe::{Event, FalseAssert};
 use crate::runtime::population::Slots;
 use crate::runtime::repetition::Finding;
-use crate::runtime::truth::Side;
+use crate::runtime::truth::{self, Side};
 
 /// An instance that may fire in the next micro-step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -139,7 +139,9 @@ impl Engine<'_, '_> {
             Origin::Claim(_) => unreachable!("claims are no candidates"),
         };
         let priority = transition.priority.map_or(0.0, |function| {
-            crate::runtime::truth::value(&self.agents, &mut self.present, function, &slots)
+            let own = self.guards.roots(candidate.instance);
+            let frame = &transition.frame;
+            truth::value(&self.agents, &mut self.present, function, frame, &slots, &own)
         });
         Ranked { candidate, slots, priority, depth, declaration: transition.declaration }
     }
@@ -261,11 +263,12 @@ impl Engine<'_, '_> {
             let was_rooted = state.rooted;
             state.touched = false;
             state.rooted = false;
-            let (atom, slots) = self.guards.atom_slots(&self.agents, index);
-            let is_written = atom.slots.iter().any(|&slot| written.before.contains_key(&slots[slot]));
-            if was_rooted || is_written {
+            if was_rooted || self.reads_written(index, written) {
                 self.settle(index, Rule::Rates, &Written::default());
             }
+        }
+        if !self.guards.definition(instance).folds.is_empty() {
+            self.settle_folds(instance);
         }
         self.note_rising(instance);
     }

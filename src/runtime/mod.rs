@@ -37,6 +37,8 @@ pub mod observe;
 mod population;
 mod present;
 mod groups;
+mod fold;
+mod definition;
 mod guards;
 mod truth;
 mod detect;

@@ -45,6 +45,8 @@ pub struct Agents<'p> {
     linked_from: Vec<Vec<usize>>,
     /// The longest chain of links that any frame follows.
     chain_max: usize,
+    /// A row of an agent that is absent.
+    absent: Vec<f64>,
     /// For each type and mode, the auxiliary columns that the flow depends on, by itself or through its kinks.
     flow_inputs: Vec<Vec<Vec<(usize, usize)>>>,
 }
@@ -86,7 +88,13 @@ impl<'p> Agents<'p> {
             linked_from,
             chain_max: longest_chain(program),
             flow_inputs: flow_inputs(program),
+            absent: vec![f64::NAN; row_width(program)],
         }
+    }
+
+    /// What is read of an agent that is absent.
+    pub fn absent_row(&self) -> &[f64] {
+        &self.absent
     }
 
     /// How many there are.
@@ -113,8 +121,7 @@ impl<'p> Agents<'p> {
 
     /// The columns of the longest row of any agent type.
     pub fn row_width(&self) -> usize {
-        let widths = self.program.types.iter().map(|ty| ty.layout.n_aux().max(ty.layout.n_states));
-        widths.max().unwrap_or(0)
+        row_width(self.program)
     }
 
     /// The columns of an agent's type.
@@ -169,6 +176,10 @@ impl<'p> Agents<'p> {
     pub fn name(&self, agent: usize) -> String {
         self.program.population.agent_name(agent)
     }
+}
+
+fn row_width(program: &Program) -> usize {
+    program.types.iter().map(|ty| ty.layout.n_aux().max(ty.layout.n_states)).max().unwrap_or(0)
 }
 
 /// The auxiliary columns that each flow depends on. Locks are not among those of its kinks: events do not write them.

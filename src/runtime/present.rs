@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use crate::codegen::kernel::{AgentBox, AgentView};
+use crate::codegen::kernel::{AgentBox, AgentView, Kernel};
 use crate::runtime::population::{ABSENT, Agents};
 
 /// The views that a kernel takes.
@@ -120,7 +120,8 @@ impl Present {
         slots.iter().map(|&agent| self.view(agents, agent)).collect()
     }
 
-    fn view<'a>(&'a self, agents: &'a Agents<'_>, agent: usize) -> AgentView<'a> {
+    /// The rows of an agent, as deep as they have been made; NaN of one that is absent.
+    pub fn view<'a>(&'a self, agents: &'a Agents<'_>, agent: usize) -> AgentView<'a> {
         if agent == ABSENT {
             let row = self.absent.as_slice();
             return AgentView { states: row, rates: row, accelerations: row, aux: row };
@@ -142,5 +143,17 @@ impl Present {
     /// The rates of an agent, made before.
     pub fn rates(&self, agent: usize) -> &[f64] {
         &self.rows[agent].rates
+    }
+}
+
+/// How deep the rows must be for a kernel.
+pub fn depth_read(kernel: &Kernel) -> Depth {
+    let slots = &kernel.reads().slots;
+    if slots.iter().any(|slot| slot.accelerations > 0) {
+        Depth::Accelerations
+    } else if slots.iter().any(|slot| slot.rates > 0) {
+        Depth::Rates
+    } else {
+        Depth::States
     }
 }

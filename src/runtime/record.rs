@@ -218,7 +218,8 @@ impl<'p> Recorder<'p> {
                 let slots = agents.slots(&definition.frame, &[agent]);
                 match &definition.value {
                     LetValue::Number(function) => {
-                        let value = truth::value(agents, present, *function, &slots);
+                        let value =
+                            truth::value(agents, present, *function, &definition.frame, &slots, &[agent]);
                         number(value, definition.column.boolean, definition.column.scale)
                     }
                     LetValue::Condition(guard) => {

@@ -2,17 +2,32 @@
 
 use crate::codegen::kernel::Kernel;
 use crate::codegen::program::{Condition, Frame, FunctionId, Guard, Quantified, Relation};
+use crate::runtime::fold::{self, Folded, Leaves};
 use crate::runtime::guards::{Guards, allowed};
 use crate::runtime::population::{Agents, Slots};
-use crate::runtime::present::{Depth, Present};
+use crate::runtime::present::{Depth, Present, depth_read};
 
 /// Which truth of an atom that changes at the present instant counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// That at the instant: a closed comparison is true on its boundary, a crossing at its zero.
     At,
+    /// That at the very instant: on its boundary a closed comparison is true, an open one false. Members of aggregates are
+    /// asked on this side and just after: either may make a comparison of the aggregate true at the instant.
+    Exact,
     /// That just after it.
     After,
+}
+
+/// Where a condition stands, and when it is asked.
+#[derive(Clone, Copy)]
+struct At {
+    /// The instance it belongs to.
+    instance: u32,
+    /// The place of its first comparison: it is the guard's, or an aggregate's.
+    base: usize,
+    /// When.
+    side: Side,
 }
 
 /// Reads the truths of atoms.
@@ -26,68 +41,98 @@ pub struct Truths<'a, 'p> {
     pub present: &'a Present,
 }
 
-impl Truths<'_, '_> {
+impl<'p> Truths<'_, 'p> {
     /// Whether the condition of an instance holds.
     pub fn holds(&self, instance: u32, side: Side) -> bool {
         match self.guards.definition(instance).guard {
             None => true,
             Some(guard) => {
+                let at = At { instance, base: self.guards.definition(instance).base, side };
                 let mut slots = self.guards.slots(self.agents, instance);
-                self.condition(instance, &guard.condition, &mut slots, side)
+                self.condition(at, &guard.condition, &mut slots)
             }
         }
     }
 
-    fn condition(&self, instance: u32, condition: &Condition, slots: &mut Slots, side: Side) -> bool {
+    fn condition(&self, at: At, condition: &Condition, slots: &mut Slots) -> bool {
         match condition {
             Condition::Constant(truth) => *truth,
-            Condition::Discrete(function) => {
-                let mut out = [0.0];
-                let kernel = self.agents.program.kernel(*function);
-                kernel.eval(&self.present.views(self.agents, slots), self.present.time, &mut out);
-                out[0] != 0.0 && !out[0].is_nan()
-            }
+            Condition::Discrete(function) => self.discrete(at, *function, slots),
             Condition::Atom(atom) => {
-                let state = &self.guards.atoms[self.guards.atom_index(self.agents, instance, *atom, slots)];
-                let guard = self.guards.definition(instance).guard.expect("an atom belongs to a guard");
-                match guard.atoms[*atom].relation {
-                    Relation::Crossing => side == Side::At && state.touched,
-                    Relation::NonPositive | Relation::Negative => {
-                        state.truth || (side == Side::At && state.touched)
-                    }
-                }
+                let atom = at.base + atom;
+                let index = self.guards.atom_index(self.agents, at.instance, atom, slots);
+                self.atom(at, self.guards.definition(at.instance).comparisons[atom].relation, index)
             }
-            Condition::And(all) => {
-                all.iter().all(|condition| self.condition(instance, condition, slots, side))
-            }
-            Condition::Or(all) => {
-                all.iter().any(|condition| self.condition(instance, condition, slots, side))
-            }
-            Condition::Exists(quantified) => self.first(instance, quantified, slots, side, true).is_some(),
-            Condition::Forall(quantified) => self.first(instance, quantified, slots, side, false).is_none(),
+            Condition::And(all) => all.iter().all(|condition| self.condition(at, condition, slots)),
+            Condition::Or(all) => all.iter().any(|condition| self.condition(at, condition, slots)),
+            Condition::Exists(quantified) => self.first(at, quantified, slots, true).is_some(),
+            Condition::Forall(quantified) => self.first(at, quantified, slots, false).is_none(),
             Condition::Rising(number, condition) => {
-                self.guards.rising[self.guards.rising_index(self.agents, instance, *number, slots)]
-                    && self.condition(instance, condition, slots, side)
+                self.guards.rising[self.guards.rising_index(self.agents, at.instance, *number, slots)]
+                    && self.condition(at, condition, slots)
             }
         }
+    }
+
+    fn atom(&self, at: At, relation: Relation, index: usize) -> bool {
+        let state = &self.guards.atoms[index];
+        match (relation, at.side) {
+            (Relation::Crossing, side) => side == Side::At && state.touched,
+            (Relation::NonPositive, Side::Exact) if state.rooted => true,
+            (Relation::Negative, Side::Exact) if state.rooted => false,
+            (Relation::NonPositive | Relation::Negative, Side::At | Side::Exact) => {
+                state.truth || state.touched
+            }
+            (Relation::NonPositive | Relation::Negative, Side::After) => state.truth,
+        }
+    }
+
+    /// A test of auxiliary columns, perhaps of aggregates: at the instant it is true by the members that they have then or
+    /// just after.
+    fn discrete(&self, at: At, function: FunctionId, slots: &Slots) -> bool {
+        let kernel = self.agents.program.kernel(function);
+        let holds = |folds: &[Folded<'_>]| {
+            let time = self.present.time;
+            let row = |agent: usize| self.present.view(self.agents, agent);
+            let leaves = fold::leaves(self.agents.program, folds, Depth::States, time, &row);
+            let mut out = [0.0];
+            kernel.eval(&fold::views(slots, &leaves, &row), time, &mut out);
+            out[0] != 0.0 && !out[0].is_nan()
+        };
+        if self.guards.definition(at.instance).folds.is_empty() {
+            return holds(&[]);
+        }
+        match at.side {
+            Side::At => [Side::Exact, Side::After]
+                .into_iter()
+                .any(|side| holds(&self.gather(at.instance, kernel, slots, side))),
+            side @ (Side::Exact | Side::After) => holds(&self.gather(at.instance, kernel, slots, side)),
+        }
+    }
+
+    /// The aggregates that a kernel of an instance reads, with the members that they have on one side of the instant.
+    pub fn gather(&self, instance: u32, kernel: &Kernel, slots: &Slots, side: Side) -> Vec<Folded<'p>> {
+        let definition = self.guards.definition(instance);
+        if definition.folds.is_empty() {
+            return Vec::new();
+        }
+        let roots = self.guards.roots(instance);
+        let frame = definition.frame;
+        fold::gather(self.agents, frame, kernel, slots, &roots, &mut |number, slots| {
+            let at = At { instance, base: definition.base_of(number), side };
+            self.condition(at, &frame.folds[number].filter.condition, slots)
+        })
     }
 
     /// The lowest agent of a quantifier's range for which its body is `wanted`.
-    fn first(
-        &self,
-        instance: u32,
-        quantified: &Quantified,
-        slots: &mut Slots,
-        side: Side,
-        wanted: bool,
-    ) -> Option<usize> {
-        let roots = self.guards.roots(instance);
-        let frame = self.guards.definition(instance).frame;
+    fn first(&self, at: At, quantified: &Quantified, slots: &mut Slots, wanted: bool) -> Option<usize> {
+        let roots = self.guards.roots(at.instance);
+        let frame = self.guards.definition(at.instance).frame;
         let range = &self.agents.of_type[quantified.ty];
         range.iter().copied().filter(|&agent| allowed(quantified, &roots, agent)).find(|&agent| {
             slots[quantified.slot] = agent;
             self.agents.follow_links(frame, slots);
-            self.condition(instance, &quantified.body, slots, side) == wanted
+            self.condition(at, &quantified.body, slots) == wanted
         })
     }
 
@@ -109,7 +154,8 @@ impl Truths<'_, '_> {
                 && wanted.contains(&quantified.slot)
             {
                 let mut bound = slots.clone();
-                if let Some(agent) = self.first(instance, quantified, &mut bound, side, true) {
+                let at = At { instance, base: definition.base, side };
+                if let Some(agent) = self.first(at, quantified, &mut bound, true) {
                     slots[quantified.slot] = agent;
                 }
             }
@@ -147,7 +193,8 @@ impl Truths<'_, '_> {
                 }
             }
             Condition::Rising(number, condition) => {
-                if !self.condition(instance, condition, slots, Side::After) {
+                let at = At { instance, base: self.guards.definition(instance).base, side: Side::After };
+                if !self.condition(at, condition, slots) {
                     seen.push(self.guards.rising_index(self.agents, instance, *number, slots));
                 }
             }
@@ -183,10 +230,10 @@ fn test_condition(
     };
     match condition {
         Condition::Constant(truth) => *truth,
-        Condition::Discrete(function) => value(agents, present, *function, slots) != 0.0,
+        Condition::Discrete(function) => value(agents, present, *function, frame, slots, roots) != 0.0,
         Condition::Atom(atom) => {
             let atom = &guard.atoms[*atom];
-            let g = value(agents, present, atom.value, slots);
+            let g = value(agents, present, atom.value, frame, slots, roots);
             match atom.relation {
                 Relation::NonPositive => g <= 0.0,
                 Relation::Negative => g < 0.0,
@@ -211,23 +258,88 @@ fn test_condition(
     }
 }
 
-/// The single output of a function on the rows of the present instant.
-pub fn value(agents: &Agents<'_>, present: &mut Present, function: FunctionId, slots: &Slots) -> f64 {
+/// The single output of a function on the rows of the present instant. `own` are the agents that `other` leaves out.
+pub fn value(
+    agents: &Agents<'_>,
+    present: &mut Present,
+    function: FunctionId,
+    frame: &Frame,
+    slots: &Slots,
+    own: &[usize],
+) -> f64 {
     let kernel = agents.program.kernel(function);
-    present.make(agents, slots, depth_read(kernel));
+    let folds = gather(agents, present, kernel, frame, slots, own);
+    evaluate(agents, present, kernel, slots, &folds)
+}
+
+/// The aggregates that a kernel reads, with their members by the rows of the present instant.
+pub fn gather<'f>(
+    agents: &Agents<'_>,
+    present: &mut Present,
+    kernel: &Kernel,
+    frame: &'f Frame,
+    slots: &Slots,
+    own: &[usize],
+) -> Vec<Folded<'f>> {
+    fold::gather(agents, frame, kernel, slots, own, &mut |number, slots| {
+        let filter = &frame.folds[number].filter;
+        test_condition(agents, present, filter, frame, &filter.condition, slots, own)
+    })
+}
+
+/// The single output of a kernel that reads these aggregates, on the rows of the present instant.
+pub fn evaluate(
+    agents: &Agents<'_>,
+    present: &mut Present,
+    kernel: &Kernel,
+    slots: &Slots,
+    folds: &[Folded<'_>],
+) -> f64 {
     let mut out = [0.0];
-    kernel.eval(&present.views(agents, slots), present.time, &mut out);
+    outputs(agents, present, kernel, slots, folds, &mut out);
     out[0]
 }
 
-/// How deep the rows must be for a kernel.
-pub fn depth_read(kernel: &Kernel) -> Depth {
-    let slots = &kernel.reads().slots;
-    if slots.iter().any(|slot| slot.accelerations > 0) {
-        Depth::Accelerations
-    } else if slots.iter().any(|slot| slot.rates > 0) {
-        Depth::Rates
-    } else {
-        Depth::States
+/// Value, rate and second rate by a kernel that reads these aggregates, on the rows of the present instant.
+pub fn jet(
+    agents: &Agents<'_>,
+    present: &mut Present,
+    kernel: &Kernel,
+    slots: &Slots,
+    folds: &[Folded<'_>],
+) -> [f64; 3] {
+    let mut out = [0.0; 3];
+    present.make(agents, slots, Depth::Accelerations);
+    outputs(agents, present, kernel, slots, folds, &mut out);
+    out
+}
+
+fn outputs(
+    agents: &Agents<'_>,
+    present: &mut Present,
+    kernel: &Kernel,
+    slots: &Slots,
+    folds: &[Folded<'_>],
+    out: &mut [f64],
+) {
+    let leaves = leaves(agents, present, kernel, slots, folds);
+    let row = |agent: usize| present.view(agents, agent);
+    kernel.eval(&fold::views(slots, &leaves, &row), present.time, out);
+}
+
+/// The values of the aggregates that a kernel reads; all rows that it needs are made.
+pub fn leaves(
+    agents: &Agents<'_>,
+    present: &mut Present,
+    kernel: &Kernel,
+    slots: &Slots,
+    folds: &[Folded<'_>],
+) -> Leaves<f64> {
+    let depth = fold::depth(agents.program, kernel, folds);
+    present.make(agents, slots, depth);
+    if !folds.is_empty() {
+        present.make(agents, &fold::involved(slots, folds), depth);
     }
+    let row = |agent: usize| present.view(agents, agent);
+    fold::leaves(agents.program, folds, depth_read(kernel), present.time, &row)
 }

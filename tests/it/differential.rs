@@ -2,7 +2,7 @@
 //!
 //! A model counts if the reference's own log is the same under half its step. `cargo test` runs 200 models by each method;
 //! `HYC_MODELS=10000 cargo test differential -- --nocapture` runs so many, from number `HYC_FIRST` (0) on; with
-//! `HYC_MODELS=1 HYC_FIRST=n` that is model n alone, and with `HYC_FILE=path` the model of that file.
+//! `HYC_MODELS=1 HYC_FIRST=n HYC_PRINT=1` that is model n alone, printed first, and with `HYC_FILE=path` the model of that file.
 
 pub mod dice;
 mod evaluate;
@@ -16,6 +16,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use compare::{Verdict, compare};
+use dice::WITH_AGGREGATES;
 use hyc::model::ir::Integrator;
 
 /// A number from the environment.
@@ -49,6 +50,9 @@ fn tally(integrator: Integrator, first: u64, models: u64) -> Tally {
                 return;
             }
             let text = std::env::var("HYC_FILE").map_or_else(|_| generate::model(number), read);
+            if setting("HYC_PRINT").is_some() {
+                println!("{text}");
+            }
             let verdict = compare(&text, integrator);
             let mut tally = tally.lock().unwrap();
             match verdict {
@@ -68,17 +72,22 @@ fn tally(integrator: Integrator, first: u64, models: u64) -> Tally {
 
 #[test]
 fn engine_and_reference_tell_the_same_story_of_random_models() {
-    tell_the_same_story(Integrator::Auto);
+    tell_the_same_story(Integrator::Auto, setting("HYC_FIRST").unwrap_or(0));
+}
+
+#[test]
+fn so_they_do_of_models_with_aggregates() {
+    tell_the_same_story(Integrator::Auto, WITH_AGGREGATES + setting("HYC_FIRST").unwrap_or(0));
 }
 
 #[test]
 fn so_they_do_by_the_paper_s_integrator() {
-    tell_the_same_story(Integrator::Adams);
+    tell_the_same_story(Integrator::Adams, setting("HYC_FIRST").unwrap_or(0));
 }
 
-fn tell_the_same_story(integrator: Integrator) {
+fn tell_the_same_story(integrator: Integrator, first: u64) {
     let models = setting("HYC_MODELS").unwrap_or(200);
-    let mut tally = tally(integrator, setting("HYC_FIRST").unwrap_or(0), models);
+    let mut tally = tally(integrator, first, models);
     let Tally { kept, skipped, events, .. } = tally;
     tally.different.sort();
     println!(

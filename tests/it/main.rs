@@ -33,3 +33,4 @@ mod differential;
 mod draws;
 mod units;
 mod robust;
+mod aggregates;

@@ -9,7 +9,7 @@ use rustc_hash::FxHashSet;
 use super::{Warning, any_within, guard};
 use crate::base::Span;
 use crate::model::context::{Body, Context, Meaning, Progress};
-use crate::model::ir::{Action, ExprId, ExprKind, Interaction, Model, Trigger, TypeId, VarRef};
+use crate::model::ir::{Action, Aggregate, ExprId, ExprKind, Interaction, Model, Trigger, TypeId, VarRef};
 use crate::model::types::Ty;
 use crate::syntax::ast::Formal;
 
@@ -163,6 +163,10 @@ pub(super) fn bound(context: &Context, found: &mut Vec<Warning>) {
             ExprKind::Bound(binder) => idle[binder.index()] = false,
             // `exists o in Car` asks for no more than that there is one.
             ExprKind::Quantifier { binder, filter: None, body, .. } if is_number(model, body) => {
+                idle[binder.index()] = false;
+            }
+            // `count o in Car` asks how many there are.
+            ExprKind::Aggregate { kind: Aggregate::Count, binder, filter: None, .. } => {
                 idle[binder.index()] = false;
             }
             _ => {}

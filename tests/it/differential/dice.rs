@@ -1,17 +1,25 @@
 //! A small generator of pseudo-random numbers (splitmix64): the same seed gives the same model on every machine.
 
+/// Models from this number on have aggregates (`count`, `sum`, ...) besides.
+pub const WITH_AGGREGATES: u64 = 1_000_000;
+
 /// The state of the generator.
-pub struct Dice(u64);
+pub struct Dice {
+    state: u64,
+    /// Whether aggregates may be written.
+    pub aggregates: bool,
+}
 
 impl Dice {
     /// The dice of one model.
     pub fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0xD134_2543_DE82_EF95).wrapping_add(0x2545_F491_4F6C_DD1D))
+        let state = seed.wrapping_mul(0xD134_2543_DE82_EF95).wrapping_add(0x2545_F491_4F6C_DD1D);
+        Self { state, aggregates: seed >= WITH_AGGREGATES }
     }
 
     fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
+        self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.state;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         z ^ (z >> 31)

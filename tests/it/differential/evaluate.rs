@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use hyc::math::Op;
-use hyc::model::ir::{BinderId, ExprId, ExprKind, Model, Quantifier, Type, TypeId};
+use hyc::model::ir::{Aggregate, BinderId, ExprId, ExprKind, Model, Quantifier, Type, TypeId};
 
 use super::world::World;
 
@@ -133,6 +133,21 @@ impl<'a> Scope<'a> {
                     self.witness(*binder, *set, *other, *filter, *body, *kind == Quantifier::Exists);
                 f64::from(witness.is_some() == (*kind == Quantifier::Exists))
             }
+            ExprKind::Aggregate { kind, binder, set, other, filter, term } => {
+                let mut terms = Vec::new();
+                for candidate in self.members(*set, *other) {
+                    self.bound.push((*binder, candidate));
+                    if filter.is_none_or(|filter| self.truth(filter)) {
+                        terms.push(term.map_or(1.0, |term| self.number(term)));
+                    }
+                    self.bound.pop();
+                }
+                match kind {
+                    Aggregate::Count | Aggregate::Sum => terms.iter().sum(),
+                    Aggregate::Min => terms.iter().copied().fold(f64::INFINITY, f64::min),
+                    Aggregate::Max => terms.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+                }
+            }
             ExprKind::Rate(..) | ExprKind::Rising(_) | ExprKind::Crossing(_) => {
                 panic!("the generator does not write this")
             }
@@ -204,10 +219,11 @@ impl<'a> Scope<'a> {
             ExprKind::Apply(Op::And | Op::Or, operands) => {
                 operands.iter().for_each(|operand| self.literals(*operand, negated, found));
             }
-            ExprKind::Apply(Op::Lt | Op::Le, operands)
-                if operands.iter().any(|operand| model.exprs[*operand].ty == Type::Real) =>
-            {
-                found.push(((expr, self.bound.clone()), negated));
+            ExprKind::Apply(Op::Lt | Op::Le | Op::Eq, operands) => {
+                if operands.iter().any(|operand| model.exprs[*operand].ty == Type::Real) {
+                    found.push(((expr, self.bound.clone()), negated));
+                }
+                operands.iter().for_each(|operand| self.filters(*operand, found));
             }
             ExprKind::Quantifier { binder, set, other, filter, body, kind } => {
                 for candidate in self.members(*set, *other) {
@@ -219,6 +235,22 @@ impl<'a> Scope<'a> {
                     self.bound.pop();
                 }
             }
+            _ => {}
+        }
+    }
+
+    /// The comparisons in the filters of aggregates.
+    fn filters(&mut self, expr: ExprId, found: &mut Vec<(Literal, bool)>) {
+        let model = self.model;
+        match &model.exprs[expr].kind {
+            ExprKind::Aggregate { binder, set, other, filter: Some(filter), .. } => {
+                for candidate in self.members(*set, *other) {
+                    self.bound.push((*binder, candidate));
+                    self.literals(*filter, false, found);
+                    self.bound.pop();
+                }
+            }
+            ExprKind::Apply(_, operands) => operands.iter().for_each(|operand| self.filters(*operand, found)),
             _ => {}
         }
     }

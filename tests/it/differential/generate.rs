@@ -209,6 +209,10 @@ fn transition(
         1 => format!("after {} [s] when {}", dice.number(0.2, 1.0), condition(dice, &views, 1)),
         2 => format!("every {} [s]", dice.number(0.3, 1.5)),
         3 => format!("every {} [s] when {}", dice.number(0.2, 0.8), condition(dice, &views, 1)),
+        5 if dice.aggregates => {
+            let set = dice.pick(shapes);
+            format!("when {}", aggregated(dice, shape, set))
+        }
         4 | 5 => {
             let set = dice.pick(shapes);
             let (guard, visible) = quantified(dice, shape, set);
@@ -265,6 +269,36 @@ fn quantified(dice: &mut Dice, shape: &Shape, set: &Shape) -> (String, bool) {
         return (format!("not {guard}"), false);
     }
     (guard, !forall)
+}
+
+/// A guard that compares an aggregate.
+fn aggregated(dice: &mut Dice, shape: &Shape, set: &Shape) -> String {
+    let other = if set.name == shape.name && dice.percent(70) { "other " } else { "" };
+    let range = format!("o in {other}{}", set.name);
+    let (own, bound) = (View { prefix: "", shape }, View { prefix: "o.", shape: set });
+    let filter = match dice.below(4) {
+        0 if set.counts => format!("o.k {} {}", dice.pick(&["==", "!="]), dice.below(3)),
+        1 => format!("abs({} - {}) <= {}", real(dice, &own), real(dice, &bound), dice.number(0.2, 1.2)),
+        _ => comparison(dice, &[bound]),
+    };
+    let bound = View { prefix: "o.", shape: set };
+    let sign = *dice.pick(&["<=", ">=", "<", ">"]);
+    let (a, b) = (real(dice, &own), real(dice, &bound));
+    let guard = match dice.below(8) {
+        0..=2 => {
+            format!("(count {range} where {filter}) {} {}", dice.pick(&["<=", ">=", "=="]), dice.below(3))
+        }
+        3 => format!("(sum {range}: {b}) {sign} {}", dice.number(-1.5, 1.5)),
+        4 => format!("(sum {range} where {filter}: {b} + 0.5*{a}) {sign} {}", dice.number(-1.0, 1.0)),
+        5 => format!("({} {range}: {b} - {a}) {sign} {}", dice.pick(&["min", "max"]), dice.number(-1.2, 1.2)),
+        6 => format!(
+            "({} {range} where {filter}: {b}) {sign} {a} + {}",
+            dice.pick(&["min", "max"]),
+            dice.number(-0.8, 0.8)
+        ),
+        _ => format!("(max {range}: {b})*(min {range}: {b}) {sign} {}", dice.number(-0.6, 0.6)),
+    };
+    if dice.percent(25) { format!("{} and {guard}", comparison(dice, &[own])) } else { guard }
 }
 
 /// A condition over what the views offer.
@@ -331,7 +365,7 @@ fn writes(dice: &mut Dice, shape: &Shape, target: &str, views: &[View<'_>], n: u
     for _ in 0..n.min(names.len()) {
         let name = names.remove(dice.below(names.len()));
         let left = format!("{target}{name}");
-        let write = |dice: &mut Dice| format!("{left} := {}", value(dice, name, &left, views));
+        let write = |dice: &mut Dice| format!("{left} := {}", value(dice, name, &left, shape, views));
         if dice.percent(12) {
             let test = comparison(dice, views);
             let (then, otherwise) = (write(dice), write(dice));
@@ -343,7 +377,7 @@ fn writes(dice: &mut Dice, shape: &Shape, target: &str, views: &[View<'_>], n: u
     list.join("  ")
 }
 
-fn value(dice: &mut Dice, name: &str, left: &str, views: &[View<'_>]) -> String {
+fn value(dice: &mut Dice, name: &str, left: &str, shape: &Shape, views: &[View<'_>]) -> String {
     let view = &views[dice.below(views.len())];
     match name {
         "k" => {
@@ -354,6 +388,14 @@ fn value(dice: &mut Dice, name: &str, left: &str, views: &[View<'_>]) -> String 
         }
         _ => match dice.below(6) {
             0 | 1 => dice.number(-1.2, 1.2),
+            2 if dice.aggregates => {
+                let kind = dice.pick(&["sum", "min", "max", "count"]);
+                let range = format!("o in {}", shape.name);
+                match *kind {
+                    "count" => format!("0.3*(count {range} where o.x >= {})", dice.number(-0.5, 0.5)),
+                    kind => format!("0.4*({kind} {range}: o.x - {})", dice.number(-0.5, 0.5)),
+                }
+            }
             2 => format!("-{left}"),
             3 => format!("-{}*{left}", dice.number(0.3, 0.9)),
             4 => format!("{left} {} {}", dice.pick(&["+", "-"]), dice.number(0.3, 2.0)),

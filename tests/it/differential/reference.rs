@@ -193,18 +193,18 @@ impl<'a> Reference<'a> {
 
     /// Rule 6.
     fn begin(&mut self) -> Option<()> {
-        for agent in 0..self.world.agents.len() {
-            for mode in self.world.modes_of(self.model, agent) {
-                let entry = &self.model.types[self.world.agents[agent].ty].modes[mode].entry;
-                let mut writes = Vec::new();
-                collect(
-                    entry,
-                    &mut Scope::new(self.model, &self.world, [agent, agent], false),
-                    &mut writes,
-                    &mut Vec::new(),
-                );
-                self.write(&writes);
+        // Entry actions of the modes of one depth read nothing of each other.
+        let depth = 2;
+        for level in 0..depth {
+            let mut writes = Vec::new();
+            for agent in 0..self.world.agents.len() {
+                let modes: Vec<ModeId> = self.world.modes_of(self.model, agent).into_iter().collect();
+                let Some(mode) = modes.get(level) else { continue };
+                let entry = &self.model.types[self.world.agents[agent].ty].modes[*mode].entry;
+                let mut own = Scope::new(self.model, &self.world, [agent, agent], false);
+                collect(entry, &mut own, &mut writes, &mut Vec::new());
             }
+            self.write(&writes);
         }
         self.arm();
         self.instant()

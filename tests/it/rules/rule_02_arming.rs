@@ -320,3 +320,16 @@ fn rule_02_a_touch_is_no_crossing() {
     // a triple root: |x - 1|^3 within rounding of zero is |x - 1| < 1e-5
     all_near(&run.times("A.through"), &[1.0], 1e-5);
 }
+
+/// Without the wake that has nothing to do with it, the flag is set after the instant, and nothing fires.
+#[test]
+fn rule_02_a_guard_that_ends_its_truth_does_not_fire_again_because_somebody_else_acts_in_that_instant() {
+    let run = simulate(
+        "agent Car(v: real) { state x  discrete n = 0  flow { x' = v }  tick: every 2 { n := n + 1 } }
+         agent Watch { discrete n = 0  near: when exists c in Car: c.x^2 <= 1 { n := n + 1 } }
+         system { car = Car(x = -3, v = 2)  far = Car(x = 9, v = 0)  watch = Watch() }
+         run { until 3 }",
+    );
+    // within 1 m of the origin from 1 to 2, when both cars tick
+    all_near(&run.times("Watch.near"), &[1.0], 1e-9);
+}

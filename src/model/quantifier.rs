@@ -1,0 +1,178 @@
+//! Quantifiers: conditions over sets of agents (`exists`, `forall`) and numbers of them (`count`, `sum`, `min`, `max`).
+
+use super::context::{Context, Global, GlobalKind, Home, Scope, Value};
+use super::error::{NameError, TypeError};
+use super::ir::{Aggregate, Binder, BinderId, ExprId, ExprKind, Quantifier, TypeId};
+use super::types::Ty;
+use crate::base::Span;
+use crate::math::Op;
+use crate::syntax::ast::{self, QuantifierKind};
+
+/// What a quantifier asks for.
+#[derive(Clone, Copy)]
+enum Asks {
+    /// A condition.
+    Truth(Quantifier),
+    /// A number.
+    Number(Aggregate),
+}
+
+/// What a quantifier ranges over.
+struct Range {
+    binder: BinderId,
+    set: TypeId,
+    other: bool,
+}
+
+impl<'a> Context<'a> {
+    /// `exists o in other Car where p: q`, `sum o in Car: o.x`.
+    pub fn lower_quantifier(
+        &mut self,
+        scope: &mut Scope<'a>,
+        item: &'a ast::Quantifier,
+        span: Span,
+    ) -> Value {
+        let asks = match item.kind {
+            QuantifierKind::Exists => Asks::Truth(Quantifier::Exists),
+            QuantifierKind::Forall => Asks::Truth(Quantifier::Forall),
+            QuantifierKind::Count => Asks::Number(Aggregate::Count),
+            QuantifierKind::Sum => Asks::Number(Aggregate::Sum),
+            QuantifierKind::Min => Asks::Number(Aggregate::Min),
+            QuantifierKind::Max => Asks::Number(Aggregate::Max),
+            QuantifierKind::Nearest => {
+                self.refuse("`nearest` quantifiers", span);
+                return self.wrong(span);
+            }
+        };
+        let Some(range) = self.range(scope, item) else { return self.wrong(span) };
+        scope.bound.push((&item.binder.text, range.binder));
+        let filter = item.filter.as_ref().map(|filter| self.lower_condition(scope, filter));
+        let value = match asks {
+            Asks::Truth(kind) => self.lower_truth(scope, kind, range, filter, item.body.as_ref(), span),
+            Asks::Number(Aggregate::Count) => {
+                self.lower_count(scope, range, filter, item.body.as_ref(), span)
+            }
+            Asks::Number(kind) => self.lower_fold(scope, kind, range, filter, item.body.as_ref(), span),
+        };
+        scope.bound.pop();
+        value
+    }
+
+    /// What a quantifier ranges over; none, and a diagnostic, if that is no set.
+    fn range(&mut self, scope: &Scope<'a>, item: &'a ast::Quantifier) -> Option<Range> {
+        if let (Some(other), Home::File | Home::Function | Home::Initial(_) | Home::Construction) =
+            (item.other, scope.home)
+        {
+            let why = "leaves out the agent that asks, and here none asks";
+            let help = "leave `other` out, and compare by `!=` with an agent that is a parameter";
+            self.report(NameError::NotHere { name: "other".to_string(), span: other, why, help });
+        }
+        if matches!(self.globals.get(item.set.text.as_str()), Some(Global { kind: GlobalKind::Instance, .. }))
+        {
+            self.refuse("quantifiers over a name of `system`", item.set.span);
+            return None;
+        }
+        let set = self.agent_named(&item.set)?;
+        let binder = self.model.binders.push(Binder {
+            name: item.binder.text.clone(),
+            ty: set,
+            span: item.binder.span,
+        });
+        Some(Range { binder, set, other: item.other.is_some() })
+    }
+
+    fn lower_truth(
+        &mut self,
+        scope: &mut Scope<'a>,
+        kind: Quantifier,
+        range: Range,
+        filter: Option<Value>,
+        body: Option<&'a ast::Expr>,
+        span: Span,
+    ) -> Value {
+        let body = match (body, kind) {
+            (Some(body), _) => self.lower_condition(scope, body),
+            (None, Quantifier::Exists) => self.number(1.0, Ty::Bool, span),
+            (None, Quantifier::Forall) => self.no_body("forall", "a condition behind `:`", span),
+        };
+        let Range { binder, set, other } = range;
+        let ty = joined(filter, Some(body), Ty::Bool);
+        let filter = id(filter);
+        self.push(ExprKind::Quantifier { kind, binder, set, other, filter, body: body.id }, ty, span)
+    }
+
+    /// What stands behind the colon of `count` is one condition more.
+    fn lower_count(
+        &mut self,
+        scope: &mut Scope<'a>,
+        range: Range,
+        filter: Option<Value>,
+        body: Option<&'a ast::Expr>,
+        span: Span,
+    ) -> Value {
+        let body = body.map(|body| self.lower_condition(scope, body));
+        let ty = joined(filter, body, Ty::Int);
+        let filter = match (filter, body) {
+            (Some(filter), Some(body)) => {
+                Some(self.apply(Op::And, vec![filter.id, body.id], Ty::Bool, span).id)
+            }
+            (filter, body) => id(filter.or(body)),
+        };
+        let Range { binder, set, other } = range;
+        let kind = Aggregate::Count;
+        self.push(ExprKind::Aggregate { kind, binder, set, other, filter, term: None }, ty, span)
+    }
+
+    fn lower_fold(
+        &mut self,
+        scope: &mut Scope<'a>,
+        kind: Aggregate,
+        range: Range,
+        filter: Option<Value>,
+        term: Option<&'a ast::Expr>,
+        span: Span,
+    ) -> Value {
+        let term = match term {
+            Some(term) => self.lower_term(scope, kind, term),
+            None => self.no_body(kind.name(), "a number behind `:`", span),
+        };
+        let ty = joined(filter, Some(term), term.ty);
+        let Range { binder, set, other } = range;
+        let (filter, term) = (id(filter), Some(term.id));
+        self.push(ExprKind::Aggregate { kind, binder, set, other, filter, term }, ty, span)
+    }
+
+    /// What is folded: a number. A comparison there was most likely meant to compare the whole.
+    fn lower_term(&mut self, scope: &mut Scope<'a>, kind: Aggregate, term: &'a ast::Expr) -> Value {
+        let value = self.lower(scope, term);
+        if value.ty.is_number() || value.ty == Ty::Wrong {
+            return value;
+        }
+        let (what, expected) =
+            (format!("what stands behind the `:` of `{}`", kind.name()), "a number".to_string());
+        let help = (value.ty == Ty::Bool).then(|| {
+            format!(
+                "it extends as far right as it can; to compare the whole write `({} ... : ...) >= 1`",
+                kind.name()
+            )
+        });
+        let found = self.describe(value.ty);
+        self.report(TypeError::Mismatch { what, expected, found, span: term.span, help });
+        Value { ty: Ty::Wrong, ..value }
+    }
+
+    fn no_body(&mut self, quantifier: &str, needs: &'static str, span: Span) -> Value {
+        let (operator, found) = (quantifier.to_string(), "all of it".to_string());
+        self.report(TypeError::Operand { operator, needs, found, span });
+        self.wrong(span)
+    }
+}
+
+/// The type of a quantifier whose parts are right.
+fn joined(filter: Option<Value>, body: Option<Value>, ty: Ty) -> Ty {
+    if filter.iter().chain(&body).any(|part| part.ty == Ty::Wrong) { Ty::Wrong } else { ty }
+}
+
+fn id(value: Option<Value>) -> Option<ExprId> {
+    value.map(|value| value.id)
+}

@@ -1,0 +1,273 @@
+//! Definitions of guards: each transition and each claim as the program says it once, with its comparisons laid out.
+//!
+//! A comparison has an instance for each binding of the quantifiers around it whose agents it reads. The filter of an
+//! aggregate is a condition too: its comparisons stand before those of the guard, those of inner aggregates first.
+
+use crate::codegen::program::{
+    Atom, ClaimSystem, Condition, Frame, Guard, PairTransition, Program, Quantified, Range, Slot,
+    TransitionSystem, Trigger,
+};
+use crate::runtime::fold;
+use crate::runtime::population::Agents;
+
+/// What a definition comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum Origin<'p> {
+    /// A transition of an agent type.
+    Transition(&'p TransitionSystem),
+    /// A transition of an interaction.
+    Pair(&'p PairTransition),
+    /// An invariant or an assert.
+    Claim(&'p ClaimSystem),
+}
+
+impl<'p> Origin<'p> {
+    /// The transition, of an agent type or of an interaction; none for a claim.
+    pub fn transition(self) -> Option<&'p TransitionSystem> {
+        match self {
+            Origin::Transition(transition) => Some(transition),
+            Origin::Pair(pair) => Some(&pair.transition),
+            Origin::Claim(_) => None,
+        }
+    }
+}
+
+/// A guard as the program says it.
+#[derive(Clone, Debug)]
+pub struct Definition<'p> {
+    /// Where it comes from.
+    pub origin: Origin<'p>,
+    /// The type of the first agent.
+    pub ty: usize,
+    /// The mode in which it is active; 0: in all.
+    pub mode: usize,
+    /// Its slots.
+    pub frame: &'p Frame,
+    /// Its condition; none: true.
+    pub guard: Option<&'p Guard>,
+    /// The aggregates that the condition reads, by number, each with the place of its filter's first comparison; rising.
+    pub folds: Vec<(usize, usize)>,
+    /// The comparisons: those of filters, then those of the guard.
+    pub comparisons: Vec<&'p Atom>,
+    /// The place of the guard's first comparison.
+    pub base: usize,
+    /// Per comparison.
+    pub atoms: Vec<AtomShape>,
+    /// How many atom instances an instance has.
+    pub n_atoms: usize,
+    /// Per `rising`: where its flags begin, the binders around it.
+    pub rising: Vec<AtomShape>,
+    /// How many `rising` flags an instance has.
+    pub n_rising: usize,
+    /// The types that quantifiers and aggregates range over, and those reached from bound agents by links.
+    pub quantified: Vec<usize>,
+}
+
+impl Definition<'_> {
+    /// The place of the first comparison of an aggregate's filter.
+    pub fn base_of(&self, number: usize) -> usize {
+        let found = self.folds.binary_search_by_key(&number, |&(number, _)| number);
+        self.folds[found.expect("all aggregates that a guard reads are laid out")].1
+    }
+}
+
+/// Where the instances of an atom lie, and what binds them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AtomShape {
+    /// The first, counted from the instance's first.
+    pub first: usize,
+    /// The quantifiers and aggregates around it, outermost first.
+    pub binders: Vec<Range>,
+}
+
+/// All definitions of a program.
+pub fn definitions<'p>(agents: &Agents<'p>) -> Vec<Definition<'p>> {
+    let program = agents.program;
+    let mut definitions = Vec::new();
+    for (ty, system) in program.types.iter().enumerate() {
+        for transition in &system.transitions {
+            let guard = guard_of(transition);
+            let origin = Origin::Transition(transition);
+            definitions.push(define(agents, origin, ty, transition.source, &transition.frame, guard));
+        }
+        for (mode, node) in system.modes.iter().enumerate() {
+            for claim in &node.claims {
+                let guard = Some(&claim.violation);
+                definitions.push(define(agents, Origin::Claim(claim), ty, mode, &claim.frame, guard));
+            }
+        }
+    }
+    for interaction in &program.interactions {
+        for pair in &interaction.transitions {
+            let (frame, guard) = (&pair.transition.frame, guard_of(&pair.transition));
+            definitions.push(define(agents, Origin::Pair(pair), interaction.types[0], 0, frame, guard));
+        }
+    }
+    definitions
+}
+
+fn guard_of(transition: &TransitionSystem) -> Option<&Guard> {
+    match &transition.trigger {
+        Trigger::When(guard) => Some(guard),
+        Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
+    }
+}
+
+fn define<'p>(
+    agents: &Agents<'p>,
+    origin: Origin<'p>,
+    ty: usize,
+    mode: usize,
+    frame: &'p Frame,
+    guard: Option<&'p Guard>,
+) -> Definition<'p> {
+    let mut binders =
+        Binders { frame, comparisons: Vec::new(), atoms: Vec::new(), rising: Vec::new(), around: Vec::new() };
+    let (mut folds, mut base, mut quantified) = (Vec::new(), 0, Vec::new());
+    if let Some(guard) = guard {
+        for number in folds_read(agents.program, frame, guard) {
+            let fold = &frame.folds[number];
+            folds.push((number, binders.comparisons.len()));
+            binders.around = fold.around.clone();
+            binders.around.push(fold.range);
+            binders.add(&fold.filter);
+        }
+        base = binders.comparisons.len();
+        binders.around.clear();
+        binders.add(guard);
+        if !folds.is_empty() || quantifies(&guard.condition) {
+            let own = if matches!(origin, Origin::Pair(_)) { 2 } else { 1 };
+            quantified = frame.slots[own..].iter().map(|slot| slot.ty()).collect();
+            quantified.sort_unstable();
+            quantified.dedup();
+        }
+    }
+    let lay_out = |lists: Vec<Vec<Range>>| {
+        let mut first = 0;
+        let mut shapes = Vec::new();
+        for binders in lists {
+            let n: usize = binders.iter().map(|binder| agents.of_type[binder.ty].len()).product();
+            shapes.push(AtomShape { first, binders });
+            first += n;
+        }
+        (shapes, first)
+    };
+    let comparisons = binders.comparisons;
+    let (atoms, n_atoms) = lay_out(binders.atoms);
+    let (rising, n_rising) = lay_out(binders.rising);
+    Definition {
+        origin,
+        ty,
+        mode,
+        frame,
+        guard,
+        folds,
+        comparisons,
+        base,
+        atoms,
+        n_atoms,
+        rising,
+        n_rising,
+        quantified,
+    }
+}
+
+/// The aggregates that a guard reads, and those that these read; rising.
+fn folds_read(program: &Program, frame: &Frame, guard: &Guard) -> Vec<usize> {
+    let mut read = vec![false; frame.folds.len()];
+    mark(program, frame, guard, &mut read);
+    for number in (0..read.len()).rev() {
+        if read[number] {
+            let fold = &frame.folds[number];
+            mark(program, frame, &fold.filter, &mut read);
+            if let Some(term) = &fold.term {
+                fold::read_by(frame, program.kernel(term.value)).for_each(|number| read[number] = true);
+            }
+        }
+    }
+    (0..read.len()).filter(|&number| read[number]).collect()
+}
+
+fn mark(program: &Program, frame: &Frame, guard: &Guard, read: &mut [bool]) {
+    for atom in &guard.atoms {
+        fold::read_by(frame, program.kernel(atom.value)).for_each(|number| read[number] = true);
+    }
+    mark_tests(program, frame, &guard.condition, read);
+}
+
+fn mark_tests(program: &Program, frame: &Frame, condition: &Condition, read: &mut [bool]) {
+    match condition {
+        Condition::Constant(_) | Condition::Atom(_) => {}
+        Condition::Discrete(function) => {
+            fold::read_by(frame, program.kernel(*function)).for_each(|number| read[number] = true);
+        }
+        Condition::And(all) | Condition::Or(all) => {
+            all.iter().for_each(|condition| mark_tests(program, frame, condition, read));
+        }
+        Condition::Exists(quantified) | Condition::Forall(quantified) => {
+            mark_tests(program, frame, &quantified.body, read);
+        }
+        Condition::Rising(_, condition) => mark_tests(program, frame, condition, read),
+    }
+}
+
+/// Finds what binds the agents that each comparison reads.
+struct Binders<'p> {
+    frame: &'p Frame,
+    comparisons: Vec<&'p Atom>,
+    atoms: Vec<Vec<Range>>,
+    rising: Vec<Vec<Range>>,
+    around: Vec<Range>,
+}
+
+impl<'p> Binders<'p> {
+    /// Adds the comparisons of a guard below what is around it.
+    fn add(&mut self, guard: &'p Guard) {
+        let base = self.comparisons.len();
+        self.comparisons.extend(&guard.atoms);
+        self.atoms.resize(base + guard.atoms.len(), Vec::new());
+        self.rising.resize(self.rising.len() + guard.n_rising, Vec::new());
+        self.walk(&guard.condition, base);
+    }
+
+    fn walk(&mut self, condition: &Condition, base: usize) {
+        match condition {
+            Condition::Constant(_) | Condition::Discrete(_) => {}
+            Condition::Atom(atom) => self.atoms[base + atom] = self.binding(self.comparisons[base + atom]),
+            Condition::And(all) | Condition::Or(all) => {
+                all.iter().for_each(|condition| self.walk(condition, base));
+            }
+            Condition::Exists(quantified) | Condition::Forall(quantified) => {
+                let Quantified { slot, ty, other, .. } = *quantified;
+                self.around.push(Range { slot, ty, other });
+                self.walk(&quantified.body, base);
+                self.around.pop();
+            }
+            Condition::Rising(number, condition) => {
+                self.rising[*number] = self.around.clone();
+                self.walk(condition, base);
+            }
+        }
+    }
+
+    /// Those around a comparison that bind an agent which it reads, or from which it follows links.
+    fn binding(&self, atom: &Atom) -> Vec<Range> {
+        let root = |mut slot: usize| {
+            while let Slot::Link { from, .. } = self.frame.slots[slot] {
+                slot = from;
+            }
+            slot
+        };
+        let reads = |range: &&Range| atom.slots.iter().any(|&slot| root(slot) == range.slot);
+        self.around.iter().filter(reads).copied().collect()
+    }
+}
+
+fn quantifies(condition: &Condition) -> bool {
+    match condition {
+        Condition::Constant(_) | Condition::Discrete(_) | Condition::Atom(_) => false,
+        Condition::And(all) | Condition::Or(all) => all.iter().any(quantifies),
+        Condition::Exists(_) | Condition::Forall(_) => true,
+        Condition::Rising(_, condition) => quantifies(condition),
+    }
+}
