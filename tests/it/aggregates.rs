@@ -166,8 +166,8 @@ fn of_nobody_count_and_sum_are_zero_and_min_and_max_infinite() {
         (format!("(max {nobody}: o.x) <= -1e300"), true),
         (format!("(max {nobody}: o.x) >= -1e300"), false),
         (format!("exp(-(min {nobody}: o.x)) <= 0"), true),
-        (format!("(min o in Empty: 1) >= 1e300"), true),
-        (format!("(count o in Empty) == 0"), true),
+        ("(min o in Empty: 1) >= 1e300".to_string(), true),
+        ("(count o in Empty) == 0".to_string(), true),
     ] {
         let run = simulate(&format!(
             "agent Car {{ state x = 0  flow {{ x' = 1 }} }}
