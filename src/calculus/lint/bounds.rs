@@ -51,7 +51,7 @@ impl Bounds {
             Node::Time => TIME,
             Node::Aux { slot, column } => match frame.slots.get(slot as usize) {
                 Some(Slot::Root { ty, .. }) => self.aux[*ty][column as usize],
-                Some(Slot::Link { .. }) | None => Interval::WHOLE,
+                Some(Slot::Link { .. } | Slot::Fold { .. }) | None => Interval::WHOLE,
             },
             Node::Constant(bits) => Interval::point(f64::from_bits(bits)),
             Node::Unary(..) | Node::Binary(..) | Node::Select(..) => Interval::WHOLE,

@@ -23,13 +23,15 @@ pub struct Reader<'s> {
     /// A slot that is read as another one.
     renamed: Option<(usize, usize)>,
     memo: FxHashMap<NodeId, FormId>,
+    /// How many aggregates have been met; each is a leaf of its own.
+    n_aggregates: u32,
 }
 
 impl<'s> Reader<'s> {
     /// Every leaf stands for itself.
     pub fn new(system: &'s System, bounds: &'s Bounds, frame: &'s Frame) -> Self {
         let (given, memo) = (FxHashMap::default(), FxHashMap::default());
-        Self { system, frame, bounds, forms: Forms::default(), given, renamed: None, memo }
+        Self { system, frame, bounds, forms: Forms::default(), given, renamed: None, memo, n_aggregates: 0 }
     }
 
     /// From now on `node` stands for numbers in an interval.
@@ -94,6 +96,12 @@ impl<'s> Reader<'s> {
         if let Node::Constant(bits) = node {
             return self.forms.constant(f64::from_bits(bits));
         }
+        if node.slot().is_some_and(|slot| matches!(self.frame.slots[slot], Slot::Fold { .. })) {
+            // What one frame calls its aggregate is not what another one does, and an action may change it.
+            self.n_aggregates += 1;
+            let slot = u32::MAX - self.n_aggregates;
+            return self.forms.leaf(Node::Aux { slot, column: 0 }, Interval::WHOLE);
+        }
         let node = match self.renamed {
             Some((from, to)) => renamed(node, from, to),
             None => node,
@@ -105,10 +113,11 @@ impl<'s> Reader<'s> {
         self.forms.leaf(node, interval)
     }
 
-    /// Whether a node reads an agent that a link may lead to, and that may be absent.
+    /// Whether a node reads an agent that a link may lead to, and that may be absent, or an aggregate of such agents.
     pub fn reads_links(&self, root: NodeId) -> bool {
         let graph = &self.system.graph;
-        let is_link = |slot: usize| matches!(self.frame.slots.get(slot), Some(Slot::Link { .. }));
+        let is_link =
+            |slot: usize| matches!(self.frame.slots.get(slot), Some(Slot::Link { .. } | Slot::Fold { .. }));
         graph.reach(&[root]).into_iter().any(|id| graph.node(id).slot().is_some_and(is_link))
     }
 }
