@@ -1,6 +1,6 @@
 // epidemic.hy: people walk about a square; who is ill infects whom it comes near, is ill for a while, and then immune.
 // Shows an interaction that is not the same for both, one guard for each ordered pair: only an ill `a` infects a healthy
-// `b`; and changes of mode that are made by another agent.
+// `b`; changes of mode that are made by another agent; and a count over all of them, which ends the run.
 
 param n:       int        = 60
 param side:    real [m]   = 60
@@ -36,9 +36,15 @@ interaction Meet(a: Person, b: Person) {
   }
 }
 
+agent Office {                               // counts the ill, and closes when there are none
+  let ill = count p in Person: p is Ill
+  over: when ill == 0 { stop "nobody is ill" }
+}
+
 system {
+  office = Office()
   first  = Person[seeds](k = index) in Ill
   others = Person[n - seeds](k = seeds + index)
 }
 
-run { until 5 [min]  record Person every 0.5 [s] to "epidemic.csv"  events to "epidemic_events.csv" }
+run { until 5 [min]  record Person, office.ill every 0.5 [s] to "epidemic.csv"  events to "epidemic_events.csv" }

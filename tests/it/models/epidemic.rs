@@ -1,7 +1,7 @@
 //! Does everybody fall ill when they should? Straight walks between walls are known, and so are the times at which two
 //! people are near: infections follow from these alone.
 
-use crate::harness::{Case, all_near, near};
+use crate::harness::{Case, Ended, all_near, near};
 
 const SIDE: f64 = 60.0;
 const REACH: f64 = 3.0;
@@ -117,6 +117,9 @@ fn everybody_falls_ill_when_the_walks_say_so() {
     let mut recoveries: Vec<f64> = expected.iter().map(|infection| infection.0 + ILL_FOR).collect();
     recoveries.splice(0..0, [ILL_FOR; SEEDS]);
     all_near(&run.times("Person.recover"), &recoveries, 1e-8);
+    // the office closes with the last recovery, in the same instant
+    near(run.time, recoveries[recoveries.len() - 1], 1e-8);
+    assert_eq!(run.end, Ended::Stop { reason: Some("nobody is ill".into()), by: "Office.over".into() });
     for k in 0..N {
         let victims = expected.iter().filter(|infection| infection.1 == k).count();
         assert_eq!(run.value(&format!("{}.victims", name(k))), victims as f64);
