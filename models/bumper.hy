@@ -4,12 +4,12 @@
 
 param N: int = 20
 param data: string = "bumper_20.csv"
-param R = 1
+param R: real [m] = 1
 param A = 0.5
-let   H = 5*ceil(sqrt(N)) - R/2              // half side less the margin
+let   H = 5 [m]*ceil(sqrt(N)) - R/2          // half side less the margin
 
-agent Car(v: real, w: real, p: real) {       // no modes: one implicit mode
-  state x, y, th
+agent Car(v: real [m/s], w: real [rad/s], p: real [rad]) {   // no modes: one implicit mode
+  state x: real [m], y: real [m], th: real [rad]
   flow { x'  = v*cos(th)
          y'  = v*sin(th)
          th' = A*w*sin(w*time + p) }

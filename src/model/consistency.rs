@@ -93,7 +93,7 @@ impl Pass<'_, '_> {
             | ExprKind::Rate(..)
             | ExprKind::Discrete(..)
             | ExprKind::AgentParam(..)
-            | ExprKind::Let(..) => self.quantity_measure(self.member(id)),
+            | ExprKind::Let(..) => self.quantity_measure(self.context.member_quantity(id)),
             ExprKind::Apply(op, operands) => {
                 let (op, arity) = (*op, operands.len());
                 let mut all = [operands[0]; 3];
@@ -151,25 +151,6 @@ impl Pass<'_, '_> {
             Quantity::As(other) => self.measures[other.index()].named(),
             Quantity::Of(other) => self.measures[other.index()],
         }
-    }
-
-    /// Where the dimension of a member of an agent comes from.
-    pub(super) fn member(&self, id: ExprId) -> Quantity {
-        let names = |agent: &ExprId| {
-            let ty: Option<TypeId> = Ty::from(self.context.model.exprs[*agent].ty).agent_type();
-            ty.map(|ty| &self.context.agents[ty.index()])
-        };
-        let slot = match &self.context.model.exprs[id].kind {
-            ExprKind::State(agent, number) => names(agent).map(|names| names.states[*number]),
-            ExprKind::Rate(agent, number) => names(agent).map(|names| names.states[*number].per_time()),
-            ExprKind::Discrete(agent, number) => names(agent).map(|names| names.discretes[*number]),
-            ExprKind::AgentParam(agent, number) => names(agent).map(|names| names.params[*number]),
-            ExprKind::Let(agent, number) => {
-                return names(agent).map_or(Quantity::Unchecked, |names| names.lets[*number]);
-            }
-            _ => None,
-        };
-        slot.map_or(Quantity::Unchecked, |slot| slot.quantity())
     }
 
     fn operator(&mut self, id: ExprId, op: Op, operands: &[ExprId], frame: Option<&Frame>) -> Measure {
@@ -352,6 +333,27 @@ impl Pass<'_, '_> {
         if unit.dimension != found && (slot.place.is_some() || measure.written().is_some()) {
             self.report_slot(value, slot, unit.dimension, found, what, frame);
         }
+    }
+}
+
+impl Context<'_> {
+    /// Where the dimension of a member of an agent comes from.
+    pub(super) fn member_quantity(&self, id: ExprId) -> Quantity {
+        let names = |agent: &ExprId| {
+            let ty: Option<TypeId> = Ty::from(self.model.exprs[*agent].ty).agent_type();
+            ty.map(|ty| &self.agents[ty.index()])
+        };
+        let slot = match &self.model.exprs[id].kind {
+            ExprKind::State(agent, number) => names(agent).map(|names| names.states[*number]),
+            ExprKind::Rate(agent, number) => names(agent).map(|names| names.states[*number].per_time()),
+            ExprKind::Discrete(agent, number) => names(agent).map(|names| names.discretes[*number]),
+            ExprKind::AgentParam(agent, number) => names(agent).map(|names| names.params[*number]),
+            ExprKind::Let(agent, number) => {
+                return names(agent).map_or(Quantity::Unchecked, |names| names.lets[*number]);
+            }
+            _ => None,
+        };
+        slot.map_or(Quantity::Unchecked, |slot| slot.quantity())
     }
 }
 

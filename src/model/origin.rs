@@ -183,14 +183,18 @@ impl Pass<'_, '_> {
             },
             ExprKind::Rate(..) => {
                 let name = name.trim_end_matches('\'').trim_end();
-                self.declared(name, self.member(id), dimension)
+                self.declared(name, self.context.member_quantity(id), dimension)
             }
             ExprKind::State(..) | ExprKind::Discrete(..) | ExprKind::AgentParam(..) | ExprKind::Let(..) => {
-                self.declared(name, self.member(id), dimension)
+                self.declared(name, self.context.member_quantity(id), dimension)
             }
             ExprKind::Apply(op, operands) => {
                 let first = usize::from(*op == Op::Select);
                 work.extend(operands[first..].iter().rev());
+                None
+            }
+            ExprKind::Aggregate { term, .. } => {
+                work.extend(term);
                 None
             }
             ExprKind::Call(function, args) => {

@@ -10,6 +10,7 @@ mod unreached;
 mod settled;
 mod repeated;
 mod lookalike;
+mod beside;
 
 use super::context::Context;
 use super::ir::{ExprId, Model, Transition, Trigger};
@@ -28,6 +29,7 @@ pub(super) fn lint(context: &mut Context) -> Vec<Diagnostic> {
     unused::bound(context, &mut found);
     unreached::modes(context, &mut found);
     lookalike::names(context, &mut found);
+    beside::numbers(context, &mut found);
     settled::conditions(context, &mut found);
     repeated::conditions(context, &mut found);
     let mut found: Vec<Diagnostic> = found.into_iter().map(Diagnostic::from).collect();

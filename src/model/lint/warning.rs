@@ -20,6 +20,8 @@ pub(super) enum Warning {
     Hidden { label: String, span: Span, by: String, first: Span },
     /// A name that is easily taken for a word of the language.
     Lookalike { name: String, word: &'static str, span: Span, same_letters: bool },
+    /// A bare number in SI beside something in another unit.
+    Beside { number: String, span: Span, unit: String, in_si: String, si: String, place: Span },
 }
 
 impl From<Warning> for Diagnostic {
@@ -68,6 +70,12 @@ impl From<Warning> for Diagnostic {
                     .label(span, "never fires")
                     .label(first, "the same condition, and leaves the mode")
                     .help("correct one of the two conditions, or leave one transition out")
+            }
+            Warning::Beside { number, span, unit, in_si, si, place } => {
+                Diagnostic::warning("HY0613", format!("this number is {in_si}, not in {unit}"))
+                    .label(span, "a bare number beside a quantity is in SI")
+                    .label(place, "declared here")
+                    .help(format!("write `{number} [{unit}]`, or `{number} [{si}]` if that is what it is"))
             }
             Warning::Lookalike { name, word, span, same_letters } => {
                 let label = if same_letters {
