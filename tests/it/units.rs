@@ -214,6 +214,20 @@ fn links_participants_and_bound_agents_have_the_units_of_their_members() {
 }
 
 #[test]
+fn sums_and_extremes_over_agents_have_the_dimension_of_their_terms() {
+    fine(&[
+        "let e = (sum o in other Car: o.x) + x  let f = (max o in Car: o.v) - v  let g = x*(count o in Car) + x",
+        "when (min o in other Car where o.v > v: abs(o.x - x)) < L { top := max o in Car: o.v }",
+    ]);
+    wrong(&[
+        "let e = (sum o in other Car: o.x) + v",
+        "let e = (min o in Car: o.x + o.v) + v",
+        "when (count o in Car where o.x > v: true) > 3 { }",
+        "entry { top := sum o in Car: o.x }",
+    ]);
+}
+
+#[test]
 fn powers_and_roots_scale_dimensions() {
     fine(
         &[
