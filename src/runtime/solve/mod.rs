@@ -10,6 +10,8 @@ pub mod tsit5;
 pub mod adams;
 pub mod integrate;
 pub mod roots;
+pub mod polynomial;
+pub mod step_select;
 
 use adams::Adams;
 use method::Method;
