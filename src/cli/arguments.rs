@@ -18,6 +18,8 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// Compile a model and simulate it
     Run(Box<RunArguments>),
+    /// Simulate a model by several algorithms, and say what each costs and misses
+    Compare(CompareArguments),
     /// Say what is wrong with models
     Check(CheckArguments),
     /// Print a model at a stage of its way to the simulator
@@ -75,7 +77,9 @@ pub(super) struct SettingArguments {
 pub(super) struct EngineArguments {
     /// How the agents' clocks advance
     #[arg(long, value_enum, default_value_t)]
-    pub(super) algorithm: Algorithm,
+    pub(super) algorithm: AlgorithmName,
+    #[command(flatten)]
+    pub(super) paper: PaperArguments,
     /// The form of the engine: `plain` (the default, until `fast` is built)
     #[arg(long, value_enum, default_value_t)]
     pub(super) engine: Engine,
@@ -92,6 +96,27 @@ pub(super) struct EngineArguments {
     /// Raise or lower a limit: max_microsteps, zeno_events, max_steps, max_guards, max_pieces (repeatable)
     #[arg(long = "limit", value_name = "NAME=N", value_parser = limit)]
     pub(super) limits: Vec<(String, u64)>,
+}
+
+/// What the published algorithms take besides the tolerance.
+#[derive(Clone, Copy, Debug, Default, Args)]
+#[command(next_help_heading = "Options of masim-2004 and sasim-2004")]
+pub(super) struct PaperArguments {
+    /// The share of a guard that a step towards it leaves over [default: 0.1]
+    #[arg(long, value_name = "G", value_parser = share)]
+    pub(super) gamma: Option<f64>,
+    /// The least step that a guard may ask for, in seconds [default: 1e-10]
+    #[arg(long, value_name = "H", value_parser = finite_positive)]
+    pub(super) h_min: Option<f64>,
+    /// The longest step, in seconds [default: 0.5]
+    #[arg(long, value_name = "H", value_parser = finite_positive)]
+    pub(super) h_max: Option<f64>,
+    /// Clocks count as equal within this, in seconds [default: 1e-9]
+    #[arg(long, value_name = "E", value_parser = finite_positive)]
+    pub(super) synchronisation: Option<f64>,
+    /// A guard counts as zero within this, in its own unit [default: 1e-6]
+    #[arg(long, value_name = "E", value_parser = finite_positive)]
+    pub(super) event_tolerance: Option<f64>,
 }
 
 /// What is written, and where.
@@ -115,6 +140,39 @@ pub(super) struct OutputArguments {
     /// Write counts and times here, as JSON
     #[arg(long, value_name = "FILE")]
     pub(super) stats: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CompareArguments {
+    /// The model
+    #[arg(value_name = "MODEL.hy")]
+    pub(super) model: PathBuf,
+    /// Which algorithms, separated by commas; costs are told in terms of the last
+    #[arg(long, value_enum, value_delimiter = ',', default_value = ALL, value_name = "A,B,..")]
+    pub(super) algorithms: Vec<AlgorithmName>,
+    /// Give a param a value, or a range of values: FROM:TO or FROM:TO:STEP (repeatable)
+    #[arg(short = 'p', long = "param", value_name = "NAME=VALUES", value_parser = pair)]
+    pub(super) params: Vec<(String, String)>,
+    /// Run with each seed from 1 to this
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(super) seeds: Option<u64>,
+    /// Relative tolerances of a step, separated by commas
+    #[arg(long, value_delimiter = ',', value_name = "E,F,..", value_parser = finite_positive)]
+    pub(super) tolerance: Vec<f64>,
+    /// Run until this time, in seconds
+    #[arg(long, value_name = "T", value_parser = finite_not_negative)]
+    pub(super) until: Option<f64>,
+    /// What evaluates the equations: machine code, or the interpreter (the same bits)
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) backend: BackendName,
+    /// Write a row for each run here
+    #[arg(long, value_name = "FILE")]
+    pub(super) csv: Option<PathBuf>,
+    /// Raise or lower a limit, as for `run` (repeatable)
+    #[arg(long = "limit", value_name = "NAME=N", value_parser = limit)]
+    pub(super) limits: Vec<(String, u64)>,
+    #[command(flatten)]
+    pub(super) paper: PaperArguments,
 }
 
 #[derive(Debug, Args)]
@@ -163,16 +221,19 @@ pub(super) struct FmtArguments {
     pub(super) rest: Vec<String>,
 }
 
+/// All algorithms, as `--algorithms` has them.
+const ALL: &str = "masim,masim-2004,sasim-2004";
+
 /// How the agents' clocks advance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(super) enum Algorithm {
+pub(super) enum AlgorithmName {
     /// Each agent has its own clock; exact about who reads whom
     #[default]
     Masim,
-    /// As published in 2004; not built yet
+    /// Algorithms 1 and 2 of Esposito & Kumar (2004), as published: may miss events
     #[value(name = "masim-2004")]
     Masim2004,
-    /// One clock for all, as published in 2004; not built yet
+    /// Algorithms 3 and 4: one clock for all, as published: may miss events
     #[value(name = "sasim-2004")]
     Sasim2004,
 }
@@ -254,6 +315,13 @@ fn limit(text: &str) -> Result<(String, u64), String> {
     match count {
         Some(count) => Ok((name, count as u64)),
         None => Err(format!("`{value}` is not a whole number from 1")),
+    }
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.0..1.0).contains(&value) => Ok(value),
+        Ok(_) | Err(_) => Err("a number from 0, below 1, is needed".into()),
     }
 }
 

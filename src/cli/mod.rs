@@ -7,6 +7,7 @@
 mod arguments;
 mod terminal;
 mod explain;
+pub mod compare;
 mod input;
 mod progress;
 mod sinks;
@@ -14,6 +15,7 @@ mod claims;
 mod warnings;
 mod sarif;
 mod refusal;
+mod algorithm;
 mod run;
 mod check;
 mod show;
@@ -60,6 +62,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> Exit {
     };
     let done = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Compare(arguments) => compare::compare(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Show(arguments) => show::show(&arguments),
         Command::Explain(arguments) => explain::explain(&arguments),

@@ -1,20 +1,17 @@
 //! What is refused before anything is done: options that are not built yet, each by its name, and a run without end.
 
 use super::Refused;
-use super::arguments::{Algorithm, Engine, EngineArguments};
+use super::arguments::{Engine, EngineArguments};
+use crate::codegen::program::Program;
 use crate::model::Model;
 use crate::model::ir::Action;
+use crate::runtime::{Algorithm, published_take};
 
 /// What `hyc fmt` says.
 pub(super) const FORMATTER: &str = "`hyc fmt` is not built yet: the printer does not keep comments so far";
 
 /// Refuses what the engine cannot do yet.
 pub(super) fn refuse_engine(arguments: &EngineArguments) -> Result<(), Refused> {
-    match arguments.algorithm {
-        Algorithm::Masim => {}
-        Algorithm::Masim2004 => return Err(not_built("--algorithm masim-2004", "masim")),
-        Algorithm::Sasim2004 => return Err(not_built("--algorithm sasim-2004", "masim")),
-    }
     match arguments.engine {
         Engine::Plain => {}
         Engine::Fast => return Err(not_built("--engine fast", "plain")),
@@ -25,6 +22,15 @@ pub(super) fn refuse_engine(arguments: &EngineArguments) -> Result<(), Refused> 
         }
         Some(_) | None => Ok(()),
     }
+}
+
+/// Refuses what the published algorithms cannot run.
+pub(super) fn refuse_aggregates(algorithm: Algorithm, program: &Program) -> Result<(), Refused> {
+    if algorithm == Algorithm::Masim || published_take(program) {
+        return Ok(());
+    }
+    let name = algorithm.name();
+    Err(format!("`{name}` does not take guards with count, sum, min or max over agents; there is `masim`"))
 }
 
 fn not_built(option: &str, instead: &str) -> Refused {

@@ -4,10 +4,11 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use super::algorithm::{integrator, single};
 use super::arguments::{AssertLevel, BackendName, RunArguments, SettingArguments};
 use super::input::{Loaded, load, name_of};
 use super::progress::ProgressLine;
-use super::refusal::{refuse_endless, refuse_engine};
+use super::refusal::{refuse_aggregates, refuse_endless, refuse_engine};
 use super::sinks::{Sinks, prepare_folder};
 use super::terminal::{complain, say, say_aside, tell};
 use super::warnings::Levels;
@@ -18,9 +19,9 @@ use crate::codegen::program::Program;
 use crate::codegen::{self, Backend};
 use crate::model::{Model, Settings};
 use crate::output::{Cast, Report, Sink, Tables, TypeColumns, statistics, summary};
-use crate::runtime;
 use crate::runtime::limits::Limits;
 use crate::runtime::observe::{End, Outcome};
+use crate::runtime::{self, Algorithm};
 
 /// Set by the user's interruption.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -28,10 +29,11 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 /// Compiles, simulates, writes.
 pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     refuse_engine(&arguments.engine)?;
+    let algorithm = single(&arguments.engine, arguments.outputs.stats.is_some())?;
     let limits = limits_of(&arguments.engine.limits)?;
     let levels = Levels::new(&arguments.allow, &[])?;
     let begun = Instant::now();
-    let loaded = load(&arguments.model, &settings_of(arguments))?;
+    let loaded = load(&arguments.model, &settings_of(arguments)?)?;
     tell(&loaded.sources, &loaded.diagnostics);
     let exit = loaded.exit();
     let Loaded { sources, mut warnings, model: Some(model), inputs, .. } = loaded else { return Ok(exit) };
@@ -46,19 +48,20 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     if !arguments.quiet {
         tell(&sources, &levels.settle(&sources, warnings));
     }
+    refuse_aggregates(algorithm, &program)?;
     let compile_seconds = begun.elapsed().as_secs_f64();
 
     let cast = cast_of(&program);
     let mut sinks = Sinks::new(&inputs);
     let (mut tables, stats_sink) = open_outputs(arguments, &program, &cast, &sources, &mut sinks)?;
     let begun = Instant::now();
-    let outcome = simulate(&program, &limits, &mut tables, arguments.quiet)?;
+    let outcome = simulate(algorithm, &program, &limits, &mut tables, arguments.quiet)?;
     let run_seconds = begun.elapsed().as_secs_f64();
     let flushed = tables.flush();
 
     let report = Report {
         model: &name_of(&arguments.model),
-        algorithm: "masim",
+        algorithm: algorithm.name(),
         engine: "plain",
         integrator: program.run.integrator.settled().name(),
         backend: backend_name(arguments.engine.backend),
@@ -94,15 +97,15 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
 }
 
 /// What the command line lays over the model.
-fn settings_of(arguments: &RunArguments) -> Settings {
+fn settings_of(arguments: &RunArguments) -> Result<Settings, Refused> {
     let SettingArguments { params, until, tolerance, absolute, seed } = arguments.settings.clone();
-    let integrator = arguments.engine.integrator;
+    let integrator = integrator(arguments.engine.algorithm, arguments.engine.integrator)?;
     let record_all = arguments.outputs.record.is_some();
-    Settings { params, until, tolerance, absolute, seed, integrator, record_all }
+    Ok(Settings { params, until, tolerance, absolute, seed, integrator, record_all })
 }
 
 /// The lower floors, one after the other; adds to the warnings about the model.
-fn compile(
+pub(super) fn compile(
     model: &Model,
     backend: BackendName,
     warnings: &mut Vec<Diagnostic>,
@@ -157,6 +160,7 @@ fn open_outputs<'a>(
 
 /// Runs until its end or the user's interruption; a second interruption ends the process at once.
 fn simulate(
+    algorithm: Algorithm,
     program: &Program,
     limits: &Limits,
     tables: &mut Tables<'_>,
@@ -173,7 +177,7 @@ fn simulate(
         let line = line.clone();
         tables.on_progress(move |progress| line.borrow_mut().show(progress));
     }
-    let outcome = runtime::simulate(program, limits, &INTERRUPTED, tables);
+    let outcome = runtime::simulate_by(algorithm, program, limits, &INTERRUPTED, tables);
     line.borrow_mut().clear();
     Ok(outcome)
 }
@@ -221,7 +225,7 @@ fn backend_name(backend: BackendName) -> &'static str {
 }
 
 /// The limits, with those that the user set.
-fn limits_of(given: &[(String, u64)]) -> Result<Limits, Refused> {
+pub(super) fn limits_of(given: &[(String, u64)]) -> Result<Limits, Refused> {
     let mut limits = Limits::default();
     let small = |value: u64| u32::try_from(value).unwrap_or(u32::MAX);
     for (name, value) in given {

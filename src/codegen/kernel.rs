@@ -115,13 +115,16 @@ impl Reads {
 pub struct Kernel {
     tape: Tape,
     reads: Reads,
+    operations: u64,
     code: Option<KernelCode>,
 }
 
 impl Kernel {
     /// A kernel of a tape, with its machine code where there is some.
     pub(super) fn new(tape: Tape, code: Option<KernelCode>) -> Self {
-        Self { reads: Reads::of(&tape), tape, code }
+        let is_applied = |instruction: &&Instruction| matches!(instruction, Instruction::Apply { .. });
+        let operations = tape.instructions.iter().filter(is_applied).count() as u64;
+        Self { reads: Reads::of(&tape), operations, tape, code }
     }
 
     /// Computes the outputs, the same bits on every back end. `out` must hold at least as many as there are.
@@ -156,6 +159,11 @@ impl Kernel {
     /// How many outputs there are.
     pub fn n_outputs(&self) -> usize {
         self.tape.outputs.len()
+    }
+
+    /// How many arithmetic operations an evaluation takes: those of its tape, a function such as `sin` as one.
+    pub fn operations(&self) -> u64 {
+        self.operations
     }
 
     /// What it reads.

@@ -28,6 +28,8 @@ pub struct Counts {
     pub rejected: u64,
     /// Right-hand sides, one for each member.
     pub rhs_evaluations: u64,
+    /// Arithmetic operations: of the right-hand sides as their tapes have them, and of the method.
+    pub operations: u64,
     /// Beginnings of an integration: at t = 0 and after every restart, one for each member.
     pub starts: u64,
 }
@@ -115,20 +117,50 @@ impl Stepper {
         }
     }
 
-    /// Takes a step that is good enough, with all members' states in one row.
+    /// From now on no step is longer than `step_max`, and none leads beyond `stop`, both s.
+    pub fn bound(&mut self, step_max: f64, stop: f64) {
+        (self.integrator.step_max, self.integrator.stop) = (step_max, stop);
+    }
+
+    /// Finds the rates of a group that begins afresh, as far as they are defined.
+    pub fn begin(&mut self, agents: &Agents<'_>, group: &mut Group) {
+        self.with_flow(agents, group, |integrator, x, group, flow| {
+            // What is not defined is met again, and reported, when a step is tried.
+            let _ = integrator.begin(group.clock, x, &mut group.integration, flow);
+        });
+    }
+
+    /// Takes a step that is good enough.
     fn accepted_step(&mut self, agents: &Agents<'_>, group: &mut Group) -> Result<Stretch, Stuck> {
+        let n_members = group.members.len() as u64;
+        let (rejected, operations) = (self.integrator.rejected, self.integrator.operations);
+        let found = self.with_flow(agents, group, |integrator, x, group, flow| {
+            integrator.step(group.clock, x, &mut group.integration, flow)
+        });
+        self.counts.operations += self.integrator.operations - operations;
+        self.counts.rejected += (self.integrator.rejected - rejected) * n_members;
+        found
+    }
+
+    /// Works on a group's integration, with all members' states in one row, and counts what that takes.
+    fn with_flow<T>(
+        &mut self,
+        agents: &Agents<'_>,
+        group: &mut Group,
+        work: impl FnOnce(&mut Integrator, &[f64], &mut Group, &mut GroupFlow<'_, '_>) -> T,
+    ) -> T {
         self.x.clear();
         for &agent in &group.members {
             self.x.extend_from_slice(&agents.agents[agent].states);
         }
-        let n_members = group.members.len() as u64;
-        self.counts.starts += if group.integration.is_fresh() { n_members } else { 0 };
-        let rejected = self.integrator.rejected;
-        let mut flow = GroupFlow::new(agents, &group.members, &self.absent);
-        let found = self.integrator.step(group.clock, &self.x, &mut group.integration, &mut flow);
+        let members = std::mem::take(&mut group.members);
+        self.counts.starts += if group.integration.is_fresh() { members.len() as u64 } else { 0 };
+        let mut flow = GroupFlow::new(agents, &members, &self.absent);
+        let done = work(&mut self.integrator, &self.x, group, &mut flow);
         self.counts.rhs_evaluations += flow.evaluations;
-        self.counts.rejected += (self.integrator.rejected - rejected) * n_members;
-        found
+        self.counts.operations += flow.operations;
+        group.members = members;
+        done
     }
 
     /// Makes the accepted step the members' last segment.

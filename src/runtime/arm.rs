@@ -118,6 +118,7 @@ impl<'p> Engine<'p, '_> {
         let absent = atom.slots.iter().any(|&slot| slots[slot] == ABSENT);
         let kernel = self.program.kernel(atom.value);
         self.curves.evaluations += 1;
+        self.curves.operations += kernel.operations();
         let folds = self.truths().gather(before.instance, kernel, &slots, Side::After);
         let g = truth::evaluate(&self.agents, &mut self.present, kernel, &slots, &folds);
         let mut touched = false;
@@ -274,6 +275,7 @@ impl<'p> Engine<'p, '_> {
         let row = |agent: usize| points[involved.binary_search(&agent).unwrap_or(involved.len())];
         let time = Interval { lo: self.present.time, hi: self.present.time };
         self.curves.ranges += 1;
+        self.curves.operations += 2 * kernel.operations();
         let depth = depth_read(kernel);
         let leaves = fold::leaf_ranges(self.program, folds, depth, time, &mut self.registers, &row);
         kernel.range(&fold::boxes(slots, &leaves, &row), time, &mut self.registers, out);

@@ -125,7 +125,7 @@ impl Engine<'_, '_> {
     }
 
     /// I6: how long an atom cannot change, if that is longer than its segments reach.
-    fn sleep(
+    pub fn sleep(
         &mut self,
         index: usize,
         (atom, slots, folds): (&Atom, &Slots, &[Folded<'_>]),

@@ -20,6 +20,8 @@ pub struct CurveRows {
     pub evaluations: u64,
     /// Evaluations over an interval.
     pub ranges: u64,
+    /// Arithmetic operations of both.
+    pub operations: u64,
 }
 
 impl CurveRows {
@@ -161,6 +163,7 @@ fn n_states(agents: &Agents<'_>, agent: usize) -> usize {
 impl Curve for AtomCurve<'_, '_> {
     fn jet(&mut self, t: f64) -> [f64; 3] {
         self.rows.evaluations += 1;
+        self.rows.operations += self.agents.program.kernel(self.atom.rates).operations();
         if !self.folds.is_empty() {
             return self.folded_jet(t);
         }
@@ -203,6 +206,7 @@ impl Curve for AtomCurve<'_, '_> {
 
     fn jet_range(&mut self, s: f64, e: f64) -> [Interval; 3] {
         self.rows.ranges += 1;
+        self.rows.operations += 2 * self.agents.program.kernel(self.atom.rates).operations();
         let mut out = [Interval::WHOLE; 3];
         let time = Interval { lo: s, hi: e };
         if !self.folds.is_empty() {

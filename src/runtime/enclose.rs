@@ -30,6 +30,8 @@ pub struct Enclosures {
     absent_aux: Vec<f64>,
     /// Right-hand sides and guards evaluated over intervals.
     pub ranges: u64,
+    /// Their arithmetic operations.
+    pub operations: u64,
 }
 
 /// Bounds of the rates of one group over a stretch of time.
@@ -62,6 +64,7 @@ impl Enclosures {
             absent: vec![Interval::WHOLE; width],
             absent_aux: vec![f64::NAN; width],
             ranges: 0,
+            operations: 0,
         }
     }
 
@@ -110,6 +113,7 @@ impl Enclosures {
         let leaves = fold::leaf_ranges(agents.program, folds, Depth::States, time, registers, &row);
         let mut out = [Interval::WHOLE];
         let kernel = agents.program.kernel(atom.value);
+        self.operations += 2 * kernel.operations();
         kernel.range(&fold::boxes(slots, &leaves, &row), time, registers, &mut out);
         Some(out[0])
     }
@@ -248,8 +252,10 @@ impl Enclosures {
                     AgentBox { states, rates: &[], accelerations: &[], aux: &agents.agents[agent].aux }
                 })
                 .collect();
+            let kernel = agents.program.kernel(flow.rates);
             self.ranges += 1;
-            agents.program.kernel(flow.rates).range(&boxes, time, &mut self.registers, &mut rates);
+            self.operations += 2 * kernel.operations();
+            kernel.range(&boxes, time, &mut self.registers, &mut rates);
             all.extend_from_slice(&rates);
         }
         all

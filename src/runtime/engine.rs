@@ -251,6 +251,12 @@ impl<'p, 'o> Engine<'p, 'o> {
             pairs_listed: self.guards.n_pairs,
             undecided_roots: self.n_undecided,
             cuts: self.n_cuts,
+            guard_polynomials: 0,
+            operations: counts.operations
+                + self.present.operations
+                + self.curves.operations
+                + self.enclosures.operations,
+            misses: None,
             types: types.collect(),
             transitions: labels.collect(),
         };

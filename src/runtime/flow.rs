@@ -19,13 +19,15 @@ pub struct GroupFlow<'a, 'p> {
     absent: &'a [f64],
     /// Right-hand sides evaluated, one for each member.
     pub evaluations: u64,
+    /// Arithmetic operations, as their tapes have them.
+    pub operations: u64,
 }
 
 impl<'a, 'p> GroupFlow<'a, 'p> {
     /// The flow of some agents that step together; `absent` is a row for those that are not there.
     pub fn new(agents: &'a Agents<'p>, members: &'a [usize], absent: &'a [f64]) -> Self {
         let slots = members.iter().map(|&agent| agents.slots(&agents.flow(agent).frame, &[agent])).collect();
-        Self { agents, members, slots, absent, evaluations: 0 }
+        Self { agents, members, slots, absent, evaluations: 0, operations: 0 }
     }
 }
 
@@ -92,13 +94,20 @@ impl Flow for Witness<'_, '_, '_> {
 impl Flow for GroupFlow<'_, '_> {
     fn rates(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
         self.evaluations += self.members.len() as u64;
-        let mut first = 0;
+        let (mut first, mut operations) = (0, 0);
         for (k, &agent) in self.members.iter().enumerate() {
             let n = self.agents.agents[agent].states.len();
             let kernel = self.agents.program.kernel(self.agents.flow(agent).rates);
-            kernel.eval(&self.views(k, x), t, &mut dx[first..first + n]);
+            let own = &x[first..first + n];
+            let views = match self.slots[k][..] {
+                [_] => views(self.agents, &self.slots[k], self.absent, own),
+                _ => self.views(k, x),
+            };
+            kernel.eval(&views, t, &mut dx[first..first + n]);
+            operations += kernel.operations();
             first += n;
         }
+        self.operations += operations;
     }
 
     fn tsit5(&mut self, t: f64, h: f64, rows: Tsit5Rows<'_>) -> bool {
@@ -106,6 +115,8 @@ impl Flow for GroupFlow<'_, '_> {
         let agent = &self.agents.agents[agent];
         let Some(kernel) = &self.agents.program.steps[agent.ty][agent.mode] else { return false };
         self.evaluations += WHOLE_STEP;
+        self.operations +=
+            WHOLE_STEP * self.agents.program.kernel(self.agents.flow(self.members[0]).rates).operations();
         let views = views(self.agents, &self.slots[0], self.absent, rows.x);
         kernel.step(&views, t, h, rows.k, rows.x_new, rows.error);
         true

@@ -87,6 +87,28 @@ impl Engine<'_, '_> {
         for instance in refold {
             self.settle_folds(instance);
         }
+        self.happen(concerned, now)
+    }
+
+    /// Executes the instant at `time`, at which a step has ended, by what is scheduled then and by atoms that have been
+    /// found at zero, within `tolerance` of g or already beyond.
+    pub fn execute_at(&mut self, time: f64, zeros: &[usize], tolerance: f64) -> Result<(), Failure> {
+        let now = self.pop_schedules(time);
+        self.present.go(time);
+        let mut concerned: Vec<u32> = Vec::new();
+        for &index in zeros {
+            self.flip(index, time);
+            let state = &mut self.guards.atoms[index];
+            state.slack = state.slack.max(tolerance);
+            state.near = time;
+            concerned.push(state.instance);
+        }
+        self.happen(concerned, now)
+    }
+
+    /// Executes the instant at the present time, if something fires by the instances whose atoms have changed or by what
+    /// is scheduled.
+    fn happen(&mut self, mut concerned: Vec<u32>, now: Vec<Due>) -> Result<(), Failure> {
         let mut candidates = Vec::new();
         for due in now {
             concerned.push(due.number);

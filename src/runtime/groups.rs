@@ -40,9 +40,15 @@ pub struct Groups {
     /// By number.
     pub groups: Vec<Group>,
     free: Vec<usize>,
+    together: bool,
 }
 
 impl Groups {
+    /// From now on all agents are one group, coupled or not.
+    pub fn step_together(&mut self) {
+        self.together = true;
+    }
+
     /// Divides `members` into groups that begin at time `clock`; each agent is told its group. Returns the groups made.
     pub fn divide(
         &mut self,
@@ -52,7 +58,8 @@ impl Groups {
         h: &dyn Fn(usize) -> Option<f64>,
     ) -> Vec<usize> {
         let mut made = Vec::new();
-        for component in components(agents, members) {
+        let components = if self.together { vec![members.to_vec()] } else { components(agents, members) };
+        for component in components {
             let number = self.free.pop().unwrap_or_else(|| {
                 self.groups.push(Group::default());
                 self.groups.len() - 1

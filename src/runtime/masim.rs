@@ -63,7 +63,7 @@ impl Engine<'_, '_> {
     }
 
     /// Rule 6: groups, locks, entry actions, arming, micro-steps at t = 0.
-    fn begin(&mut self) -> Result<(), Failure> {
+    pub fn begin(&mut self) -> Result<(), Failure> {
         self.present.go(0.0);
         let all: Vec<usize> = (0..self.agents.len()).collect();
         self.set_locks(all.iter().copied());
@@ -98,7 +98,7 @@ impl Engine<'_, '_> {
     }
 
     /// The end: the last rows, and the state of every agent at T (rule 12).
-    fn finish(&mut self) -> Result<End, Failure> {
+    pub fn finish(&mut self) -> Result<End, Failure> {
         if self.time_end == f64::INFINITY {
             return Err(Reason::NeverEnds { time: self.present.time }.into());
         }
@@ -110,7 +110,8 @@ impl Engine<'_, '_> {
         Ok(End::Until)
     }
 
-    fn tell_progress(&mut self) -> Result<(), Failure> {
+    /// Tells how far the run has come.
+    pub fn tell_progress(&mut self) -> Result<(), Failure> {
         let progress = Progress {
             time: self.cover().min(self.time_end),
             until: self.time_end,
@@ -122,7 +123,7 @@ impl Engine<'_, '_> {
     }
 
     /// Advances the group that lags most.
-    fn advance_laggard(&mut self, cover: f64) -> Result<(), Failure> {
+    pub fn advance_laggard(&mut self, cover: f64) -> Result<(), Failure> {
         let Some(due) = self.queues.clocks.pop() else { return Ok(()) };
         let number = due.number as usize;
         if self.groups.groups[number].clock != due.time {

@@ -33,6 +33,7 @@
 
 mod solve;
 pub mod limits;
+pub mod paper;
 pub mod observe;
 mod population;
 mod present;
@@ -59,14 +60,22 @@ mod certify;
 mod explain;
 mod gather;
 mod masim;
+mod watch;
+mod audit;
+mod clocks;
+mod masim_2004;
+mod sasim_2004;
 
 use std::sync::atomic::AtomicBool;
 
 use crate::codegen::program::Program;
+use clocks::Clocks;
+pub use clocks::takes as published_take;
 use engine::Engine;
 use failure::Failure;
 pub use limits::Limits;
 use observe::{End, Observer, Outcome, Stats};
+pub use paper::Algorithm;
 
 /// Runs a program and tells the observer what happens.
 ///
@@ -78,19 +87,46 @@ pub fn simulate(
     interrupt: &AtomicBool,
     observer: &mut dyn Observer,
 ) -> Outcome {
+    simulate_by(Algorithm::Masim, program, limits, interrupt, observer)
+}
+
+/// The same by another algorithm.
+pub fn simulate_by(
+    algorithm: Algorithm,
+    program: &Program,
+    limits: &Limits,
+    interrupt: &AtomicBool,
+    observer: &mut dyn Observer,
+) -> Outcome {
     let mut engine = match Engine::new(program, limits, interrupt, observer) {
         Ok(engine) => engine,
         Err(failure) => return stillborn(failure),
     };
-    let end = match engine.run() {
-        Ok(end) => end,
-        Err(failure) => end_of(failure),
+    let (mut clocks, end) = match algorithm {
+        Algorithm::Masim => {
+            let end = engine.run();
+            let end = last_words(&mut engine, end);
+            return engine.outcome(end);
+        }
+        Algorithm::Masim2004(paper) => {
+            let mut clocks = Clocks::new(engine, paper);
+            let end = clocks.masim();
+            (clocks, end)
+        }
+        Algorithm::Sasim2004(paper) => {
+            let mut clocks = Clocks::new(engine, paper);
+            let end = clocks.sasim();
+            (clocks, end)
+        }
     };
-    let end = match engine.tell_last() {
-        Ok(()) => end,
-        Err(failure) => end_of(failure),
-    };
-    engine.outcome(end)
+    let end = last_words(&mut clocks.engine, end);
+    clocks.outcome(end)
+}
+
+/// Tells the observer the last state of every agent.
+fn last_words(engine: &mut Engine<'_, '_>, end: Result<End, Failure>) -> End {
+    let end = end.unwrap_or_else(end_of);
+    engine.tell_last().map_or_else(end_of, |()| end)
 }
 
 fn end_of(failure: Failure) -> End {

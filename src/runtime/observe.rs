@@ -270,10 +270,29 @@ pub struct Stats {
     pub undecided_roots: u64,
     /// Segments that an event cut.
     pub cuts: u64,
+    /// Guard polynomials (18) and (28) of the 2004 algorithms.
+    pub guard_polynomials: u64,
+    /// Arithmetic operations: of right-hand sides and guards as their tapes have them (a bound over an interval as two,
+    /// a function such as `sin` as one), of the steps and of the guard polynomials by a count for each.
+    pub operations: u64,
+    /// What certified detection found on the same trajectories and a 2004 algorithm did not; none where nothing was
+    /// compared.
+    pub misses: Option<Misses>,
     /// Per agent type: name, agents, steps, events.
     pub types: Vec<TypeStats>,
     /// Per transition: label, firings.
     pub transitions: Vec<(String, u64)>,
+}
+
+/// Events that a 2004 algorithm passes over, found by certified detection on the same trajectories.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Misses {
+    /// Not executed at all.
+    pub missed: u64,
+    /// Executed more than 1e-3 s after their time.
+    pub late: u64,
+    /// The longest delay of one that was executed, s.
+    pub latest: f64,
 }
 
 /// Counts of one agent type.

@@ -28,6 +28,8 @@ pub struct Present {
     pub time: f64,
     /// Right-hand sides evaluated here.
     pub rhs_evaluations: u64,
+    /// Arithmetic operations of right-hand sides and second rates evaluated here.
+    pub operations: u64,
     stamp: u64,
     rows: Vec<Rows>,
     absent: Vec<f64>,
@@ -49,6 +51,7 @@ impl Present {
         Self {
             time: f64::NAN,
             rhs_evaluations: 0,
+            operations: 0,
             stamp: 1,
             rows: vec![Rows::default(); agents.len()],
             absent,
@@ -100,7 +103,9 @@ impl Present {
         let mut out = std::mem::take(self.row_mut(number, depth));
         out.resize(agents.layout(number).n_states, 0.0);
         let function = if depth == Depth::Rates { flow.rates } else { flow.accelerations };
-        agents.program.kernel(function).eval(&self.views(agents, &slots), self.time, &mut out);
+        let kernel = agents.program.kernel(function);
+        kernel.eval(&self.views(agents, &slots), self.time, &mut out);
+        self.operations += kernel.operations();
         self.rhs_evaluations += u64::from(depth == Depth::Rates);
         *self.row_mut(number, depth) = out;
         self.rows[number].made[depth as usize] = self.stamp;
@@ -138,6 +143,11 @@ impl Present {
     /// The states of an agent, made before.
     pub fn states(&self, agent: usize) -> &[f64] {
         &self.rows[agent].states
+    }
+
+    /// The second rates of an agent, made before.
+    pub fn accelerations(&self, agent: usize) -> &[f64] {
+        &self.rows[agent].accelerations
     }
 
     /// The rates of an agent, made before.

@@ -174,7 +174,7 @@ fn a_model_with_errors_ends_with_1_and_writes_nothing() {
 #[test]
 fn wrong_usage_ends_with_2_and_says_what_is_wrong() {
     let folder = folder(&[("ball.hy", BALL), ("endless.hy", &BALL.replace("until 1 ", ""))]);
-    let cases: [(&[&str], &str); 22] = [
+    let cases: [(&[&str], &str); 24] = [
         (&["run", "endless.hy"], "the run has no end"),
         (&["run", "missing.hy"], "cannot read `missing.hy`: No such file"),
         (&["run"], "MODEL.hy"),
@@ -184,8 +184,10 @@ fn wrong_usage_ends_with_2_and_says_what_is_wrong() {
         (&["run", "ball.hy", "--tolerance", "0"], "positive"),
         (&["run", "ball.hy", "-p", "g"], "NAME=VALUE"),
         (&["run", "ball.hy", "-j", "0"], "0"),
-        (&["run", "ball.hy", "--algorithm", "masim-2004"], "not built yet"),
-        (&["run", "ball.hy", "--algorithm", "sasim-2004"], "not built yet"),
+        (&["run", "ball.hy", "--algorithm", "masim-2004", "--integrator", "tsit5"], "not by `tsit5`"),
+        (&["run", "ball.hy", "--algorithm", "sasim-2004", "--h-min", "1"], "`--h-min` 1 is more"),
+        (&["run", "ball.hy", "--algorithm", "sasim-2004", "--gamma", "1"], "below 1"),
+        (&["run", "ball.hy", "--gamma", "0.5"], "`--gamma` belongs to"),
         (&["run", "ball.hy", "--engine", "fast"], "not built yet"),
         (&["run", "ball.hy", "--integrator", "stiff"], "not built yet"),
         (&["run", "ball.hy", "--integrator", "taylor"], "not built yet"),

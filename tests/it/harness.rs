@@ -10,6 +10,7 @@ use hyc::codegen::Backend;
 use hyc::codegen::program::Program;
 use hyc::model::ir::{Integrator, Model};
 use hyc::model::{Files, Settings};
+use hyc::runtime::Algorithm;
 use hyc::runtime::limits::Limits;
 use hyc::runtime::observe::{
     Cause, Cell, End, Explanation, FalseAssert, Last, Observer, Outcome, Progress, Row, ShownComparison,
@@ -23,6 +24,7 @@ pub struct Case {
     text: String,
     settings: Settings,
     limits: Limits,
+    algorithm: Algorithm,
 }
 
 /// A row of the event log with names.
@@ -210,6 +212,15 @@ impl Case {
         self
     }
 
+    /// `--algorithm`, with the integrator that goes with it.
+    pub fn algorithm(mut self, algorithm: Algorithm) -> Self {
+        self.algorithm = algorithm;
+        match algorithm {
+            Algorithm::Masim => self,
+            Algorithm::Masim2004(_) | Algorithm::Sasim2004(_) => self.integrator(Integrator::Adams),
+        }
+    }
+
     /// `max_microsteps` and the like.
     pub fn limits(mut self, limits: Limits) -> Self {
         self.limits = limits;
@@ -296,7 +307,9 @@ impl Case {
 
     fn observe(&self, model: &Model, program: &Program, sources: &SourceMap, reasons: Reasons) -> Run {
         let mut recorder = Recorder::new(model, reasons);
-        let outcome = hyc::runtime::simulate(program, &self.limits, &AtomicBool::new(false), &mut recorder);
+        let interrupt = AtomicBool::new(false);
+        let outcome =
+            hyc::runtime::simulate_by(self.algorithm, program, &self.limits, &interrupt, &mut recorder);
         recorder.run(outcome, sources.clone())
     }
 

@@ -29,6 +29,8 @@ mod closed_forms;
 mod bumper;
 mod accuracy;
 mod adams;
+mod paper;
+mod compare;
 mod differential;
 mod draws;
 mod units;

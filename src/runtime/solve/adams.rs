@@ -23,7 +23,7 @@ use crate::runtime::solve::segment::Segment;
 use crate::runtime::solve::tsit5::{self, Tsit5};
 
 /// How many rates of the past the predictor uses: m of eq. (11).
-const POINTS: usize = 3;
+pub const POINTS: usize = 3;
 /// Order of the corrector; the estimated error falls with its power of the step.
 const ORDER: f64 = 4.0;
 /// The most that a step may be longer than the one before; the predictor gets worse beyond what it has seen.
@@ -48,6 +48,11 @@ impl Method for Adams {
 
     fn depth(&self) -> usize {
         POINTS
+    }
+
+    /// Differences 9, predictor 9, its value 4, corrector 21, its value 4, norm of the error 4.
+    fn operations(&self, n_known: usize) -> u64 {
+        if n_known < POINTS { self.starter.operations(n_known) } else { 51 }
     }
 
     fn step(&mut self, start: &Start<'_>, flow: &mut dyn Flow, trial: &mut Trial) {
@@ -101,6 +106,20 @@ pub fn predictor(past: &Past, i: usize) -> [f64; 3] {
     let [f01, f012] = differences(past, i);
     let u1 = past.time(1) - past.time(0);
     [past.rates(0)[i], (f01 - u1 * f012) / 2.0, f012 / 3.0]
+}
+
+/// The same of however many rates are known: none leave a state where it is.
+pub fn extrapolation(past: &Past, i: usize) -> [f64; 3] {
+    match past.len() {
+        0 => [0.0; 3],
+        1 => [past.rates(0)[i], 0.0, 0.0],
+        2 => [
+            past.rates(0)[i],
+            (past.rates(0)[i] - past.rates(1)[i]) / (past.time(0) - past.time(1)) / 2.0,
+            0.0,
+        ],
+        _ => predictor(past, i),
+    }
 }
 
 /// The first and the second divided difference of the rates of equation `i`: on the last two and the last three times.

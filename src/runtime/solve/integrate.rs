@@ -53,6 +53,11 @@ impl Integration {
         self.past.clear();
     }
 
+    /// What is known of the rates, at the clock and before it.
+    pub fn past(&self) -> &Past {
+        &self.past
+    }
+
     /// Whether the next step begins afresh.
     pub fn is_fresh(&self) -> bool {
         self.past.is_empty()
@@ -84,17 +89,30 @@ pub enum Stuck {
 pub struct Integrator {
     method: Box<dyn Method>,
     accuracy: Accuracy,
-    time_end: f64,
+    /// No step leads beyond, s; one that would nearly reach it ends there.
+    pub stop: f64,
+    /// No step is longer, s.
+    pub step_max: f64,
     /// The last try; its states are the new ones when a step has been accepted.
     pub trial: Trial,
     /// Tries that were rejected.
     pub rejected: u64,
+    /// Arithmetic operations of the method, without those of the right-hand sides.
+    pub operations: u64,
 }
 
 impl Integrator {
     /// An integrator up to `time_end`, s.
     pub fn new(method: Box<dyn Method>, accuracy: Accuracy, time_end: f64) -> Self {
-        Self { method, accuracy, time_end, trial: Trial::default(), rejected: 0 }
+        Self {
+            method,
+            accuracy,
+            stop: time_end,
+            step_max: f64::INFINITY,
+            trial: Trial::default(),
+            rejected: 0,
+            operations: 0,
+        }
     }
 
     /// Tries steps from `(t, x)` until one is good enough.
@@ -106,21 +124,22 @@ impl Integrator {
         flow: &mut dyn Flow,
     ) -> Result<Stretch, Stuck> {
         self.trial.resize(x.len());
-        if integration.past.is_empty() {
-            self.begin(t, x, integration, flow)?;
-        }
+        self.begin(t, x, integration, flow)?;
         let mut h = match integration.h {
             Some(h) => h,
             None => self.first_step(t, x, integration, flow),
         };
         loop {
-            let left = self.time_end - t;
-            let (step, end) = if h >= left * (1.0 - 1e-12) { (left, self.time_end) } else { (h, t + h) };
+            let left = self.stop - t;
+            let wanted = h.min(self.step_max);
+            let (step, end) =
+                if wanted >= left * (1.0 - 1e-12) { (left, self.stop) } else { (wanted, t + wanted) };
             let too_short = end <= t + 2.0 * ulp(t);
-            if too_short && end < self.time_end {
+            if too_short && end < self.stop {
                 return Err(if self.is_finite() { Stuck::Underflow } else { Stuck::NonFinite });
             }
             self.method.step(&Start { t, h: step, x, past: &integration.past }, flow, &mut self.trial);
+            self.operations += self.method.operations(integration.past.len()) * x.len() as u64;
             let stretch = Stretch { t, h: step, end };
             if too_short {
                 // Not a step, but the end: what is left of the run cannot be told from none.
@@ -134,7 +153,8 @@ impl Integrator {
             integration.note(Attempt { t, h: step, ratio, accepted, refused: 0 });
             if accepted {
                 let next = step * integration.control.accepted(ratio, *pace);
-                integration.h = Some(if step < h { next.max(h) } else { next }.min(1e100));
+                let cut_short = step < wanted;
+                integration.h = Some(if cut_short { next.max(h) } else { next }.min(1e100));
                 return Ok(stretch);
             }
             self.rejected += 1;
@@ -169,14 +189,18 @@ impl Integrator {
         x_new.iter().chain(error).chain(rates).all(|value| value.is_finite())
     }
 
-    /// The rates at the clock.
-    fn begin(
+    /// Finds the rates at the clock, where they are not known.
+    pub fn begin(
         &mut self,
         t: f64,
         x: &[f64],
         integration: &mut Integration,
         flow: &mut dyn Flow,
     ) -> Result<(), Stuck> {
+        if !integration.past.is_empty() {
+            return Ok(());
+        }
+        self.trial.resize(x.len());
         let Trial { x_new, error, rates, .. } = &mut self.trial;
         x_new.copy_from_slice(x);
         error.fill(0.0);
@@ -199,7 +223,7 @@ impl Integrator {
         let first_rates = integration.past.rates(0);
         let (d0, d1) = (norm(x), norm(first_rates));
         let h0 = if d0 < 1e-5 || d1 < 1e-5 { 1e-6 } else { 0.01 * d0 / d1 };
-        let h0 = h0.min(self.time_end - t);
+        let h0 = h0.min(self.stop - t);
         let moved: Vec<f64> = (0..n).map(|i| x[i] + h0 * first_rates[i]).collect();
         let mut rates = vec![0.0; n];
         flow.rates(t + h0, &moved, &mut rates);

@@ -83,6 +83,9 @@ pub trait Method {
     /// How many rates of the past it uses.
     fn depth(&self) -> usize;
 
+    /// Arithmetic operations of a step for each equation, without the right-hand side, from this many rates of the past.
+    fn operations(&self, n_known: usize) -> u64;
+
     /// Tries a step; `trial` has room for the equations.
     fn step(&mut self, start: &Start<'_>, flow: &mut dyn Flow, trial: &mut Trial);
 

@@ -12,6 +12,7 @@ pub mod integrate;
 pub mod roots;
 pub mod polynomial;
 pub mod step_select;
+pub mod extra_state;
 
 use adams::Adams;
 use method::Method;
