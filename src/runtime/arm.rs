@@ -150,9 +150,6 @@ impl<'p> Engine<'p, '_> {
         if atom.relation == Relation::Crossing && rule == Rule::Woken && truth != before.truth {
             touched = true;
         }
-        if !folds.is_empty() && !truth && atom.relation != Relation::Crossing {
-            touched = self.true_exactly_now(before.instance, atom, &slots);
-        }
         let state = &mut self.guards.atoms[index];
         state.truth = truth;
         state.touched = touched;
@@ -162,24 +159,32 @@ impl<'p> Engine<'p, '_> {
         self.guards.atoms[index].settled = !(unchanged && before.slack == 0.0);
     }
 
-    /// Whether a comparison of aggregates holds with the members that they have at the very instant.
+    /// Whether a comparison of aggregates has other members at the very instant than just after it, and holds with those.
     fn true_exactly_now(&mut self, instance: u32, atom: &Atom, slots: &Slots) -> bool {
         let kernel = self.program.kernel(atom.value);
-        let folds = self.truths().gather(instance, kernel, slots, Side::Exact);
-        let g = truth::evaluate(&self.agents, &mut self.present, kernel, slots, &folds);
-        g < 0.0 || g.abs() <= self.rounding(kernel, slots, &folds) && closed(atom.relation, false)
+        let [exactly, after] =
+            [Side::Exact, Side::After].map(|side| self.truths().gather(instance, kernel, slots, side));
+        let g = truth::evaluate(&self.agents, &mut self.present, kernel, slots, &exactly);
+        if g == truth::evaluate(&self.agents, &mut self.present, kernel, slots, &after) {
+            return false;
+        }
+        g < 0.0 || g.abs() <= self.rounding(kernel, slots, &exactly) && closed(atom.relation, false)
     }
 
     /// Settles the comparisons of aggregates of an instance, some of which have other members now.
     pub fn settle_folds(&mut self, instance: u32) {
         for index in self.guards.atom_range(instance) {
-            let (atom, _) = self.guards.atom_slots(&self.agents, index);
+            let (atom, slots) = self.guards.atom_slots(&self.agents, index);
             if !atom.folds.is_empty() {
                 let before = self.guards.atoms[index];
                 self.settle(index, Rule::Rates, &Written::default());
-                let state = &mut self.guards.atoms[index];
-                let crossed = atom.relation == Relation::Crossing && state.truth != before.truth;
-                state.touched |= before.touched || crossed;
+                let touched = match atom.relation {
+                    Relation::Crossing => self.guards.atoms[index].truth != before.truth,
+                    Relation::NonPositive | Relation::Negative => {
+                        self.true_exactly_now(instance, atom, &slots)
+                    }
+                };
+                self.guards.atoms[index].touched |= before.touched || touched;
             }
         }
     }

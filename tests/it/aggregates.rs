@@ -426,3 +426,26 @@ fn what_is_wrong_with_an_aggregate_is_said() {
     let flow = refused("agent Car { state x = 0  flow { x' = sum o in Car: o.x } }");
     assert!(flow.contains("HY0290") && flow.contains("quantifiers in flows"), "{flow}");
 }
+
+#[test]
+fn a_sum_that_is_entered_on_its_boundary_moving_out_is_held() {
+    // The sum is at 1 at 1 s, when the mode is entered again with a flow that takes it down.
+    let run = simulate(
+        "agent Car {
+           state x = 0
+           discrete n: int = 0
+           initial mode Up {
+             flow { x' = 1 }
+             t: when (sum o in Car: o.x) > 1 -> Down { n := n + 1 }
+           }
+           mode Down {
+             flow { x' = -1 }
+             u: when (sum o in Car: o.x) >= 1 -> Rest { n := n + 10 }
+           }
+           mode Rest { flow { x' = 0 } }
+         }
+         system { car = Car() }
+         run { until 3 }",
+    );
+    assert_eq!((run.mode("car"), run.value("car.n")), ("Down", 1.0));
+}
