@@ -17,6 +17,9 @@ pub enum Colours {
     None,
 }
 
+/// A line of the source that has more bytes is not shown.
+const LINE_MAX: usize = 2_000;
+
 /// The diagnostics as text, in the order given, an empty line after each.
 pub fn render(sources: &SourceMap, diagnostics: &[Diagnostic], colours: Colours) -> String {
     let bytes = match colours {
@@ -33,10 +36,22 @@ fn draw<W: WriteColor>(sources: &SourceMap, diagnostics: &[Diagnostic], mut writ
     }
     let config = term::Config { tab_width: 4, ..term::Config::default() };
     for diagnostic in diagnostics {
-        term::emit_to_write_style(&mut writer, &config, &files, &to_drawn(diagnostic))
+        let long = diagnostic.labels.iter().any(|label| sources.line_of(label.span).len() > LINE_MAX);
+        let drawn = if long { to_drawn(&without_lines(sources, diagnostic)) } else { to_drawn(diagnostic) };
+        term::emit_to_write_style(&mut writer, &config, &files, &drawn)
             .expect("writing to memory cannot fail, and every span lies in its file");
     }
     writer
+}
+
+/// The same with its places in words.
+fn without_lines(sources: &SourceMap, diagnostic: &Diagnostic) -> Diagnostic {
+    let places = diagnostic.labels.iter().map(|label| {
+        let (line, column) = sources.line_column(label.span);
+        format!("{}:{line}:{column}: {}", sources.file(label.span.file).name, label.text)
+    });
+    let notes = places.chain(diagnostic.notes.iter().cloned()).collect();
+    Diagnostic { labels: Vec::new(), notes, ..diagnostic.clone() }
 }
 
 fn to_drawn(diagnostic: &Diagnostic) -> drawn::Diagnostic<usize> {

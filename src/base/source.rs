@@ -42,6 +42,29 @@ pub struct SourceFile {
     pub name: String,
     /// The whole text.
     pub text: String,
+    /// Where each line begins.
+    line_starts: Vec<u32>,
+}
+
+impl SourceFile {
+    fn new(name: String, text: String) -> Self {
+        let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
+        let starts = ends.map(|(k, _)| u32::try_from(k + 1).unwrap_or(u32::MAX));
+        let line_starts = std::iter::once(0).chain(starts).collect();
+        Self { name, text, line_starts }
+    }
+
+    /// The number of the line on which a byte stands, from 0.
+    fn line_at(&self, byte: usize) -> usize {
+        self.line_starts.partition_point(|&start| start as usize <= byte) - 1
+    }
+
+    /// A line by its number from 0, without its end; empty if there is none.
+    pub fn line(&self, number: usize) -> &str {
+        let Some(&start) = self.line_starts.get(number) else { return "" };
+        let end = self.line_starts.get(number + 1).map_or(self.text.len(), |&end| end as usize);
+        self.text.get(start as usize..end).unwrap_or("").trim_end_matches(['\n', '\r'])
+    }
 }
 
 /// All texts that a run has read: models, imported models, data files.
@@ -54,7 +77,7 @@ impl SourceMap {
     /// Adds a text under a name.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> FileId {
         let id = FileId(u32::try_from(self.files.len()).expect("fewer than 2^32 files"));
-        self.files.push(SourceFile { name: name.into(), text: text.into() });
+        self.files.push(SourceFile::new(name.into(), text.into()));
         id
     }
 
@@ -73,15 +96,21 @@ impl SourceMap {
         self.file(span.file).text.get(span.range()).unwrap_or("")
     }
 
+    /// The line on which a span begins, without its end.
+    pub fn line_of(&self, span: Span) -> &str {
+        let file = self.file(span.file);
+        file.line(file.line_at((span.start as usize).min(file.text.len())))
+    }
+
     /// Line and column (in characters) of the start of a span, both from 1.
     pub fn line_column(&self, span: Span) -> (usize, usize) {
-        let text = &self.file(span.file).text;
-        let mut start = (span.start as usize).min(text.len());
-        while !text.is_char_boundary(start) {
+        let file = self.file(span.file);
+        let mut start = (span.start as usize).min(file.text.len());
+        while !file.text.is_char_boundary(start) {
             start -= 1;
         }
-        let before = &text[..start];
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+        let line = file.line_at(start);
+        let before = &file.text[file.line_starts[line] as usize..start];
+        (line + 1, before.chars().count() + 1)
     }
 }

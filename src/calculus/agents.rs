@@ -217,22 +217,26 @@ pub fn number_declarations(types: &mut [AgentSystem], interactions: &mut [Intera
 pub fn lets(draft: &mut Draft) {
     for (id, ty) in draft.model.types.iter_enumerated() {
         let mut lets = Vec::with_capacity(ty.lets.len());
+        let mut scope = Scope::of_self(id);
         for declared in &ty.lets {
-            let lowered = recorded(draft, id, declared, &format!("{}.{}", ty.name, declared.name));
+            let lowered = recorded(draft, &mut scope, declared, &format!("{}.{}", ty.name, declared.name));
             lets.extend(draft.keep(lowered));
+            // What one let has become serves the next, unless it reads other agents: those are its own.
+            if scope.frame.slots.len() > 1 {
+                scope = Scope::of_self(id);
+            }
         }
         draft.types[id.index()].lets = lets;
     }
 }
 
-fn recorded(draft: &mut Draft, ty: TypeId, declared: &Let, name: &str) -> Result<LetSystem, Error> {
-    let mut scope = Scope::of_self(ty);
+fn recorded(draft: &mut Draft, scope: &mut Scope, declared: &Let, name: &str) -> Result<LetSystem, Error> {
     let boolean = draft.model.exprs[declared.value].ty == Type::Bool;
     let value = if boolean {
-        LetValue::Condition(guard::guard(draft, &mut scope, declared.value, Sense::Positive, name)?)
+        LetValue::Condition(guard::guard(draft, scope, declared.value, Sense::Positive, name)?)
     } else {
-        LetValue::Number(number(draft, &mut scope, declared.value, name)?)
+        LetValue::Number(number(draft, scope, declared.value, name)?)
     };
     let column = Column { name: declared.name.clone(), scale: declared.scale, boolean };
-    Ok(LetSystem { column, mode: declared.mode.index(), frame: scope.into_frame(), value })
+    Ok(LetSystem { column, mode: declared.mode.index(), frame: scope.frame.clone(), value })
 }

@@ -29,6 +29,9 @@ impl From<Error> for Halt {
     }
 }
 
+/// What lowering an expression counts, in nodes looked at.
+const LOWERING: u64 = 40;
+
 /// Why an expression cannot be lowered at once.
 enum Wait {
     /// Another one comes first.
@@ -57,6 +60,8 @@ pub fn value(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> 
     let mut waiting: FxHashSet<(EnvId, ExprId)> = stack.iter().copied().collect();
     while let Some(&(env, expr)) = stack.last() {
         if !scope.memo.contains_key(&(env, expr)) {
+            draft.graph.spend(LOWERING);
+            draft.check_work(draft.model.exprs[expr].span)?;
             match step(draft, scope, env, expr) {
                 Ok(value) => {
                     if let Value::Number(node) = value {

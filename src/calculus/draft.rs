@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::base::{Arena, Diagnostic};
+use crate::base::{Arena, Diagnostic, Span};
 use crate::calculus::error::Error;
 use crate::calculus::graph::{Graph, NodeId};
 use crate::calculus::system::{AgentSystem, Column, Function, FunctionId, InteractionSystem, Layout, System};
@@ -36,9 +36,22 @@ impl<'m> Draft<'m> {
         if let Some(&known) = self.known.get(&outputs) {
             return known;
         }
+        // Its tape will be as long.
+        self.graph.reach(&outputs);
         let id = self.functions.push(Function { name: name(), outputs: outputs.clone() });
         self.known.insert(outputs, id);
         id
+    }
+
+    /// Whether the equations take more work than the limit.
+    pub fn is_exhausted(&self) -> bool {
+        self.graph.work() > self.model.limits.operations_max
+    }
+
+    /// Refuses equations that take more work than the limit; `span` is where that shows.
+    pub fn check_work(&self, span: Span) -> Result<(), Error> {
+        let limit = self.model.limits.operations_max;
+        if self.is_exhausted() { Err(Error::TooMuchWork { limit, span }) } else { Ok(()) }
     }
 
     /// Notes a failure and goes on with what comes next.

@@ -17,15 +17,18 @@ pub enum Error {
     ConditionTooLarge { limit: usize, span: Span },
     /// A condition too deeply nested once lets and functions are inlined.
     ConditionTooDeep { limit: usize, span: Span },
+    /// Equations that take too long to work out.
+    TooMuchWork { limit: u64, span: Span },
 }
 
 impl Error {
     /// Whether a limit is exceeded, of which one report is enough.
     pub fn is_limit(&self) -> bool {
         match self {
-            Error::TooManySlots { .. } | Error::ConditionTooLarge { .. } | Error::ConditionTooDeep { .. } => {
-                true
-            }
+            Error::TooManySlots { .. }
+            | Error::ConditionTooLarge { .. }
+            | Error::ConditionTooDeep { .. }
+            | Error::TooMuchWork { .. } => true,
             Error::QuantifierInNumber { .. } | Error::EventNegated { .. } | Error::ForeignRate { .. } => {
                 false
             }
@@ -63,6 +66,12 @@ impl Error {
                     .label(span, "once lets and functions are put in")
                     .note(format!("the limit is {limit} comparisons and tests"))
                     .help("keep what is used several times in a `discrete`, or split the transition")
+            }
+            Error::TooMuchWork { limit, span } => {
+                Diagnostic::error("HY0307", "the equations of this model become too large")
+                    .label(span, "gave up here")
+                    .note(format!("once lets and functions are put in, more than {limit} operations were looked at"))
+                    .help("functions that call each other twice or more double the work at every level; or raise the limit: `--limit max_operations=N`")
             }
             Error::ConditionTooDeep { limit, span } => {
                 Diagnostic::error("HY0306", "a condition that becomes too deeply nested")

@@ -25,14 +25,21 @@ pub fn flow(draft: &mut Draft, ty: TypeId, leaf: ModeId, name: &str) -> Result<F
         })?);
     }
     let (rates, kinks) = kinks::lock(draft, &mut scope, ty.index(), &plain, name);
-    let accelerations: Vec<NodeId> =
-        rates.iter().map(|&rate| derive::along_flow(&mut draft.graph, rate)).collect();
-    let (jacobian, values) = jacobian(&mut draft.graph, &rates);
+    let mut accelerations: Vec<NodeId> = Vec::with_capacity(rates.len());
+    for (&rate, &span) in rates.iter().zip(&spans) {
+        draft.check_work(span)?;
+        accelerations.push(derive::along_flow(&mut draft.graph, rate));
+    }
+    let (mut entries, mut values) = (Vec::new(), Vec::new());
+    for (row, (&rate, &span)) in rates.iter().zip(&spans).enumerate() {
+        draft.check_work(span)?;
+        jacobian_row(&mut draft.graph, row, rate, &mut entries, &mut values);
+    }
     let couples = couples(&draft.graph, &plain);
     Ok(Flow {
         rates: draft.function(|| format!("{name} flow"), rates),
         accelerations: draft.function(|| format!("{name} second rates"), accelerations),
-        jacobian,
+        jacobian: entries,
         jacobian_values: draft.function(|| format!("{name} Jacobian"), values),
         kinks,
         couples,
@@ -55,18 +62,20 @@ fn equations(draft: &Draft, ty: TypeId, leaf: ModeId) -> Vec<(ExprId, Span)> {
     found.into_iter().map(|equation| equation.expect("every state has one equation in every leaf")).collect()
 }
 
-/// The entries of df/dx that are not always 0.
-fn jacobian(graph: &mut Graph, rates: &[NodeId]) -> (Vec<JacobianEntry>, Vec<NodeId>) {
-    let (mut entries, mut values) = (Vec::new(), Vec::new());
-    for (row, &rate) in rates.iter().enumerate() {
-        for (leaf, value) in derive::gradient(graph, rate) {
-            if let Node::State { slot, column } = leaf {
-                entries.push(JacobianEntry { row, slot: slot as usize, column: column as usize });
-                values.push(value);
-            }
+/// The entries of a row of df/dx that are not always 0.
+fn jacobian_row(
+    graph: &mut Graph,
+    row: usize,
+    rate: NodeId,
+    entries: &mut Vec<JacobianEntry>,
+    values: &mut Vec<NodeId>,
+) {
+    for (leaf, value) in derive::gradient(graph, rate) {
+        if let Node::State { slot, column } = leaf {
+            entries.push(JacobianEntry { row, slot: slot as usize, column: column as usize });
+            values.push(value);
         }
     }
-    (entries, values)
 }
 
 /// The foreign slots whose states are read, kinks included.

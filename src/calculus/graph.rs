@@ -1,6 +1,8 @@
 //! The expression graph: hash-consed, operands before their users.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use std::cell::{Cell, RefCell};
+
+use rustc_hash::FxHashMap;
 
 use crate::base::{Arena, Idx};
 use crate::math::Op;
@@ -90,6 +92,16 @@ pub struct Graph {
     nodes: Arena<Node>,
     known: FxHashMap<Node, NodeId>,
     moving: Vec<bool>,
+    /// How many nodes have been looked at.
+    work: Cell<u64>,
+    marks: RefCell<Marks>,
+}
+
+/// Which nodes a walk has met: those that bear the number of its round. Kept, so that a short walk costs no more in a large graph.
+#[derive(Clone, Debug, Default)]
+struct Marks {
+    round: u64,
+    of_node: Vec<u64>,
 }
 
 impl Graph {
@@ -116,19 +128,39 @@ impl Graph {
 
     /// All nodes that `roots` are computed from, themselves included, operands before users.
     pub fn reach(&self, roots: &[NodeId]) -> Vec<NodeId> {
-        let mut seen: FxHashSet<NodeId> = roots.iter().copied().collect();
-        let mut found: Vec<NodeId> = seen.iter().copied().collect();
+        let mut marks = self.marks.borrow_mut();
+        let Marks { round, of_node } = &mut *marks;
+        of_node.resize(self.nodes.len(), 0);
+        *round += 1;
+        let mut found: Vec<NodeId> = Vec::new();
+        let mut add = |id: NodeId, found: &mut Vec<NodeId>| {
+            if std::mem::replace(&mut of_node[id.index()], *round) != *round {
+                found.push(id);
+            }
+        };
+        for &root in roots {
+            add(root, &mut found);
+        }
         let mut next = 0;
         while let Some(&id) = found.get(next) {
             next += 1;
             for operand in self.node(id).operands() {
-                if seen.insert(operand) {
-                    found.push(operand);
-                }
+                add(operand, &mut found);
             }
         }
         found.sort_unstable();
+        self.spend(found.len() as u64);
         found
+    }
+
+    /// Counts work.
+    pub fn spend(&self, nodes: u64) {
+        self.work.set(self.work.get().saturating_add(nodes));
+    }
+
+    /// How much has been counted.
+    pub fn work(&self) -> u64 {
+        self.work.get()
     }
 
     /// The node of a name.

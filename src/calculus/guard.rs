@@ -20,7 +20,9 @@ pub fn guard(
     name: &str,
 ) -> Result<Guard, Error> {
     let cond = condition::lower(draft, scope, expr, sense)?;
-    Ok(finish(draft, &scope.frame, cond, name))
+    let guard = finish(draft, &scope.frame, cond, name);
+    draft.check_work(draft.model.exprs[expr].span)?;
+    Ok(guard)
 }
 
 /// Numbers the atoms of a condition.
@@ -88,10 +90,11 @@ pub fn atom(
     written: Written,
     name: &str,
 ) -> Atom {
-    let [first, second] = derive::rates(&mut draft.graph, g);
+    // Beyond the limit nothing is derived any more: whoever asked for this will say so.
+    let [first, second] = if draft.is_exhausted() { [g, g] } else { derive::rates(&mut draft.graph, g) };
     let value = draft.function(|| name.to_owned(), vec![g]);
     let rates = draft.function(|| format!("{name} rates"), vec![g, first, second]);
-    let reach = draft.graph.reach(&[g]);
+    let reach = if draft.is_exhausted() { vec![g] } else { draft.graph.reach(&[g]) };
     let (slots, folds) = slots_read(&draft.graph, frame, &reach);
     let smooth = is_smooth(&draft.graph, frame, &reach);
     let names = Names { types: &draft.types, frame };

@@ -38,6 +38,10 @@ pub fn lock(
     };
     let mut locked: FxHashMap<NodeId, NodeId> = FxHashMap::default();
     for id in pass.draft.graph.reach(flow) {
+        if pass.draft.is_exhausted() {
+            // The flow is refused for it.
+            return (flow.to_vec(), pass.kinks);
+        }
         let new = match pass.draft.graph.node(id) {
             Node::Unary(op, a) => pass.unary(op, a, locked[&a], id),
             Node::Binary(op, a, b) => pass.binary(op, [a, b], [locked[&a], locked[&b]], id),

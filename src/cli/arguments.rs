@@ -93,7 +93,7 @@ pub(super) struct EngineArguments {
     /// How many threads may work; never changes a result (the plain engine uses one)
     #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) threads: Option<u32>,
-    /// Raise or lower a limit: max_microsteps, zeno_events, max_steps, max_guards, max_pieces (repeatable)
+    /// Raise or lower a limit, such as max_steps=1e6; a wrong name lists all (repeatable)
     #[arg(long = "limit", value_name = "NAME=N", value_parser = limit)]
     pub(super) limits: Vec<(String, u64)>,
 }
@@ -183,6 +183,9 @@ pub(super) struct CheckArguments {
     /// Give a param another value, in its declared unit (repeatable)
     #[arg(short = 'p', long = "param", value_name = "NAME=VALUE", value_parser = pair)]
     pub(super) params: Vec<(String, String)>,
+    /// Raise or lower a limit, such as max_agents=2e7; a wrong name lists all (repeatable)
+    #[arg(long = "limit", value_name = "NAME=N", value_parser = limit)]
+    pub(super) limits: Vec<(String, u64)>,
     /// The form of the diagnostics
     #[arg(long, value_enum, default_value_t)]
     pub(super) format: Format,
@@ -205,6 +208,9 @@ pub(super) struct ShowArguments {
     /// Give a param another value, in its declared unit (repeatable)
     #[arg(short = 'p', long = "param", value_name = "NAME=VALUE", value_parser = pair)]
     pub(super) params: Vec<(String, String)>,
+    /// Raise or lower a limit, such as max_agents=2e7; a wrong name lists all (repeatable)
+    #[arg(long = "limit", value_name = "NAME=N", value_parser = limit)]
+    pub(super) limits: Vec<(String, u64)>,
 }
 
 #[derive(Debug, Args)]

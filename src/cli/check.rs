@@ -17,7 +17,7 @@ use crate::output::diagnostic_json;
 
 /// Checks each model; the worst of them decides the exit code.
 pub(super) fn check(arguments: &CheckArguments) -> Result<Exit, Refused> {
-    let settings = settings_with(&arguments.params);
+    let settings = settings_with(&arguments.params, &arguments.limits)?;
     let levels = Levels::new(&arguments.allow, &arguments.deny)?;
     let mut worst = Exit::Fine;
     let mut found = Vec::new();

@@ -1,14 +1,21 @@
 //! From a path to a model: reads the file, and those that it names, and calls the doors of syntax and model.
 
 use std::fs;
-use std::io;
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
+use super::limits::Limits;
 use super::{Exit, Refused};
 use crate::base::{Diagnostic, SourceMap};
 use crate::model::ir::Model;
 use crate::model::{Checked, Files, Settings};
 use crate::syntax::{self, Ast};
+
+/// The largest text of a model: a little more than the floor of syntax takes, which has a message of its own.
+const MODEL_BYTES_MAX: u64 = (syntax::MAX_FILE_BYTES as u64) * 2;
+
+/// The largest data file.
+const DATA_BYTES_MAX: u64 = 1 << 30;
 
 /// The name under which messages show a model's path.
 pub(super) fn name_of(path: &Path) -> String {
@@ -23,7 +30,8 @@ pub(super) struct Parsed {
 
 /// Reads and parses. Refused if the file cannot be read or is not UTF-8.
 pub(super) fn parse(path: &Path) -> Result<Parsed, Refused> {
-    let text = fs::read_to_string(path)
+    let text = read_bytes(path, MODEL_BYTES_MAX)
+        .and_then(|bytes| String::from_utf8(bytes).map_err(|_| io::ErrorKind::InvalidData.into()))
         .map_err(|error| format!("cannot read `{}`: {}", path.display(), reason(&error)))?;
     let mut sources = SourceMap::default();
     let file = sources.add(name_of(path), text.as_str());
@@ -65,9 +73,23 @@ pub(super) fn load(path: &Path, settings: &Settings) -> Result<Loaded, Refused> 
     Ok(Loaded { sources, diagnostics, warnings, model, inputs: files.inputs })
 }
 
-/// Settings that only give params.
-pub(super) fn settings_with(params: &[(String, String)]) -> Settings {
-    Settings { params: params.to_vec(), ..Settings::default() }
+/// Settings that only give params and limits.
+pub(super) fn settings_with(
+    params: &[(String, String)],
+    limits: &[(String, u64)],
+) -> Result<Settings, Refused> {
+    let limits = Limits::new(limits)?.model;
+    Ok(Settings { params: params.to_vec(), limits, ..Settings::default() })
+}
+
+/// A file, if it is not larger than so many bytes; one without end is refused, not read.
+fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    fs::File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        return Err(io::Error::other(format!("it is larger than {} MiB", most >> 20)));
+    }
+    Ok(bytes)
 }
 
 /// The data files of a model, found relative to it.
@@ -79,7 +101,8 @@ struct Folder {
 impl Files for Folder {
     fn read(&mut self, path: &str) -> io::Result<Vec<u8>> {
         let path = self.folder.join(path);
-        let bytes = fs::read(&path).map_err(|error| io::Error::new(error.kind(), reason(&error)))?;
+        let bytes = read_bytes(&path, DATA_BYTES_MAX)
+            .map_err(|error| io::Error::new(error.kind(), reason(&error)))?;
         self.inputs.push(path);
         Ok(bytes)
     }

@@ -7,6 +7,7 @@
 mod arguments;
 mod terminal;
 mod explain;
+mod limits;
 pub mod compare;
 mod input;
 mod progress;

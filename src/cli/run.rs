@@ -7,6 +7,7 @@ use std::time::Instant;
 use super::algorithm::{integrator, single};
 use super::arguments::{AssertLevel, BackendName, RunArguments, SettingArguments};
 use super::input::{Loaded, load, name_of};
+use super::limits::Limits;
 use super::progress::ProgressLine;
 use super::refusal::{refuse_aggregates, refuse_endless, refuse_engine};
 use super::sinks::{Sinks, prepare_folder};
@@ -19,7 +20,6 @@ use crate::codegen::program::Program;
 use crate::codegen::{self, Backend};
 use crate::model::{Model, Settings};
 use crate::output::{Cast, Report, Sink, Tables, TypeColumns, statistics, summary};
-use crate::runtime::limits::Limits;
 use crate::runtime::observe::{End, Outcome};
 use crate::runtime::{self, Algorithm};
 
@@ -30,10 +30,10 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     refuse_engine(&arguments.engine)?;
     let algorithm = single(&arguments.engine, arguments.outputs.stats.is_some())?;
-    let limits = limits_of(&arguments.engine.limits)?;
+    let limits = Limits::new(&arguments.engine.limits)?;
     let levels = Levels::new(&arguments.allow, &[])?;
     let begun = Instant::now();
-    let loaded = load(&arguments.model, &settings_of(arguments)?)?;
+    let loaded = load(&arguments.model, &settings_of(arguments, &limits)?)?;
     tell(&loaded.sources, &loaded.diagnostics);
     let exit = loaded.exit();
     let Loaded { sources, mut warnings, model: Some(model), inputs, .. } = loaded else { return Ok(exit) };
@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     let mut sinks = Sinks::new(&inputs);
     let (mut tables, stats_sink) = open_outputs(arguments, &program, &cast, &sources, &mut sinks)?;
     let begun = Instant::now();
-    let outcome = simulate(algorithm, &program, &limits, &mut tables, arguments.quiet)?;
+    let outcome = simulate(algorithm, &program, &limits.run, &mut tables, arguments.quiet)?;
     let run_seconds = begun.elapsed().as_secs_f64();
     let flushed = tables.flush();
 
@@ -97,11 +97,12 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
 }
 
 /// What the command line lays over the model.
-fn settings_of(arguments: &RunArguments) -> Result<Settings, Refused> {
+fn settings_of(arguments: &RunArguments, limits: &Limits) -> Result<Settings, Refused> {
     let SettingArguments { params, until, tolerance, absolute, seed } = arguments.settings.clone();
     let integrator = integrator(arguments.engine.algorithm, arguments.engine.integrator)?;
     let record_all = arguments.outputs.record.is_some();
-    Ok(Settings { params, until, tolerance, absolute, seed, integrator, record_all })
+    let limits = limits.model;
+    Ok(Settings { params, until, tolerance, absolute, seed, integrator, record_all, limits })
 }
 
 /// The lower floors, one after the other; adds to the warnings about the model.
@@ -162,7 +163,7 @@ fn open_outputs<'a>(
 fn simulate(
     algorithm: Algorithm,
     program: &Program,
-    limits: &Limits,
+    limits: &runtime::Limits,
     tables: &mut Tables<'_>,
     quiet: bool,
 ) -> Result<Outcome, Refused> {
@@ -222,26 +223,6 @@ fn backend_name(backend: BackendName) -> &'static str {
         BackendName::Jit => "jit",
         BackendName::Interp => "interp",
     }
-}
-
-/// The limits, with those that the user set.
-pub(super) fn limits_of(given: &[(String, u64)]) -> Result<Limits, Refused> {
-    let mut limits = Limits::default();
-    let small = |value: u64| u32::try_from(value).unwrap_or(u32::MAX);
-    for (name, value) in given {
-        match name.as_str() {
-            "max_microsteps" => limits.microsteps_max = small(*value),
-            "zeno_events" => limits.zeno_events = small(*value),
-            "max_steps" => limits.steps_max = *value,
-            "max_guards" => limits.guards_max = usize::try_from(*value).unwrap_or(usize::MAX),
-            "max_pieces" => limits.pieces_max = small(*value),
-            _ => {
-                let known = "max_microsteps, zeno_events, max_steps, max_guards, max_pieces";
-                return Err(format!("there is no limit `{name}`; there are {known}"));
-            }
-        }
-    }
-    Ok(limits)
 }
 
 fn write_whole(mut sink: Sink, text: &str) -> Result<(), Refused> {

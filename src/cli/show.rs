@@ -11,7 +11,7 @@ pub(super) fn show(arguments: &ShowArguments) -> Result<Exit, Refused> {
     if arguments.stage == Stage::Ast {
         return show_tree(arguments);
     }
-    let loaded = load(&arguments.model, &settings_with(&arguments.params))?;
+    let loaded = load(&arguments.model, &settings_with(&arguments.params, &arguments.limits)?)?;
     tell(&loaded.sources, &loaded.diagnostics);
     let exit = loaded.exit();
     let Loaded { sources, model: Some(model), .. } = loaded else { return Ok(exit) };

@@ -64,12 +64,8 @@ fn code(word: &str) -> Result<String, Refused> {
 
 /// The line on which a place begins, and the one above.
 fn lines_about(sources: &SourceMap, span: Span) -> impl Iterator<Item = &str> {
-    let text = sources.file(span.file).text.as_str();
-    let start = (span.start as usize).min(text.len());
-    let line_at = |at: usize| text[..at].rfind('\n').map_or(0, |newline| newline + 1);
-    let own = line_at(start);
-    let above = own.checked_sub(1).map(|newline| &text[line_at(newline)..newline]);
-    text[own..].lines().next().into_iter().chain(above)
+    let (line, _) = sources.line_column(span);
+    (line.saturating_sub(2)..line).map(move |number| sources.file(span.file).line(number))
 }
 
 /// Whether the comment of a line says `allow` and then, among codes, this one.

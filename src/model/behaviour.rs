@@ -68,11 +68,12 @@ impl<'a> Context<'a> {
         for number in 0..self.model.types[ty].modes.len() {
             let mode = ModeId::new(number);
             let (mut written_entry, mut written_exit) = (Written::default(), Written::default());
+            let mut flowing = FxHashMap::default();
             for item in self.mode_items(ty, mode) {
                 match item {
                     BodyItem::Flow(flow) => {
                         for equation in &flow.equations {
-                            self.fill_equation(ty, mode, equation);
+                            self.fill_equation(ty, mode, equation, &mut flowing);
                         }
                     }
                     BodyItem::Invariant(claim) => {
@@ -113,7 +114,14 @@ impl<'a> Context<'a> {
         Claim { condition: condition.id, message, span: item.span }
     }
 
-    fn fill_equation(&mut self, ty: TypeId, mode: ModeId, equation: &'a ast::FlowEquation) {
+    /// `flowing` holds the states that have an equation in this mode, with its place.
+    fn fill_equation(
+        &mut self,
+        ty: TypeId,
+        mode: ModeId,
+        equation: &'a ast::FlowEquation,
+        flowing: &mut FxHashMap<usize, Span>,
+    ) {
         let name = &equation.state;
         let what = format!("the rate of `{}`", name.text);
         let mut scope = Scope::of(Home::Agent(ty, mode));
@@ -124,11 +132,11 @@ impl<'a> Context<'a> {
         if rate.ty != Ty::Wrong && self.facts[rate.id.index()].quantified {
             self.refuse("quantifiers in flows", equation.rate.span);
         }
-        let flow = &mut self.model.types[ty].modes[mode].flow;
-        if let Some(&(_, _, first)) = flow.iter().find(|(other, _, _)| *other == state) {
+        if let Some(&first) = flowing.get(&state) {
             return self.report(ModeError::TwoFlows { state: name.text.clone(), span: equation.span, first });
         }
-        flow.push((state, rate.id, equation.span));
+        flowing.insert(state, equation.span);
+        self.model.types[ty].modes[mode].flow.push((state, rate.id, equation.span));
     }
 
     /// The number of the state of this name; none, and a diagnostic, if it is no state.

@@ -292,10 +292,10 @@ pub(super) struct Context<'a> {
 
 impl<'a> Context<'a> {
     /// A context without names.
-    pub fn new(sources: &'a mut SourceMap, overrides: Vec<(String, String)>) -> Self {
+    pub fn new(sources: &'a mut SourceMap, settings: &super::Settings) -> Self {
         Self {
             sources,
-            model: Model::default(),
+            model: Model { limits: settings.limits, ..Model::default() },
             facts: Vec::new(),
             quantities: FxHashMap::default(),
             goals: Vec::new(),
@@ -307,11 +307,11 @@ impl<'a> Context<'a> {
             pairs: Vec::new(),
             signatures: Vec::new(),
             texts: Vec::new(),
-            overrides,
+            overrides: settings.params.clone(),
             from_data: FxHashSet::default(),
             imports: false,
             diagnostics: Vec::new(),
-            evaluator: Evaluator::new(limits::STEPS_MAX),
+            evaluator: Evaluator::new(settings.limits.evaluations_max),
         }
     }
 
@@ -335,7 +335,8 @@ impl<'a> Context<'a> {
         self.diagnostics.sort_by_key(|diagnostic| diagnostic.labels.first().map(|label| label.span));
         self.diagnostics.dedup();
         let model = if self.has_errors() { None } else { Some(self.model) };
-        super::Checked { model, diagnostics: self.diagnostics, warnings }
+        let (diagnostics, warnings) = (first_of(self.diagnostics), first_of(warnings));
+        super::Checked { model, diagnostics, warnings }
     }
 
     /// A type in words.
@@ -470,4 +471,18 @@ impl<'a> Context<'a> {
         }
         result
     }
+}
+
+/// As many diagnostics as anybody reads, errors before all else, and how many more there are.
+fn first_of(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let count = diagnostics.len();
+    if count > limits::DIAGNOSTICS_MAX {
+        diagnostics.sort_by_key(|diagnostic| !diagnostic.is_error());
+        diagnostics.truncate(limits::DIAGNOSTICS_MAX);
+        let more = format!("{} more like these are not shown", count - limits::DIAGNOSTICS_MAX);
+        if let Some(last) = diagnostics.last_mut() {
+            last.notes.push(more);
+        }
+    }
+    diagnostics
 }

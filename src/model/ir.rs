@@ -6,6 +6,7 @@
 use crate::base::{Arena, Idx, Span};
 use crate::math::{Op, Scale};
 pub use crate::model::integrator::Integrator;
+use crate::model::limits::Limits;
 
 /// Names an [`Expr`].
 pub type ExprId = Idx<Expr>;
@@ -39,6 +40,8 @@ pub struct Model {
     pub population: Population,
     /// What `run { }` says.
     pub run: Run,
+    /// What it may ask for.
+    pub limits: Limits,
 }
 
 /// A top-level `param`.

@@ -1,11 +1,30 @@
-//! The limits of this floor, by name. They are far above any model in sight and cannot be raised by a setting: each
-//! guards memory or time against a model that asks for too much by mistake, and each has a diagnostic.
+//! The limits of a model, by name: each guards memory or time against a model that asks for too much by mistake, and each has a
+//! diagnostic that says which setting raises it (`--limit NAME=N`). The constants below are not to be raised: they are what
+//! the stack holds, and what anybody reads.
 
-/// How many agents there may be at t = 0.
-pub const AGENTS_MAX: usize = 10_000_000;
+/// Limits that the command line can raise or lower.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// `max_agents`: agents at t = 0.
+    pub agents_max: usize,
+    /// `max_values`: numbers that all agents hold together (parameters, states, discrete variables, links), and cells of one sample.
+    pub values_max: usize,
+    /// `max_evaluations`: operations that all constants together may take.
+    pub evaluations_max: u64,
+    /// `max_operations`: work on the equations once lets and functions are put in, in nodes looked at.
+    pub operations_max: u64,
+}
 
-/// How many operations all constants together may take.
-pub const STEPS_MAX: u64 = 50_000_000;
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            agents_max: 10_000_000,
+            values_max: 200_000_000,
+            evaluations_max: 50_000_000,
+            operations_max: 200_000_000,
+        }
+    }
+}
 
 /// How many operations the initial values of an agent may take, on average.
 pub const STEPS_PER_AGENT_MAX: u64 = 1_000;
@@ -25,3 +44,6 @@ pub const INLINED_DEPTH_MAX: usize = 64;
 
 /// How many branches an `if ... else if ...` among actions may have.
 pub const BRANCHES_MAX: usize = 256;
+
+/// How many errors, and how many warnings, of one model are told.
+pub const DIAGNOSTICS_MAX: usize = 200;

@@ -6,8 +6,8 @@
 //! not be there. Many errors are reported in one run, none of them twice.
 
 mod integrator;
-pub mod ir;
 pub mod limits;
+pub mod ir;
 mod suggest;
 mod dimension;
 mod measure;
@@ -71,6 +71,8 @@ pub struct Settings {
     /// `--record`: if `run` names no trajectories, record all states and discrete variables of all agents, to a file that the
     /// command line knows.
     pub record_all: bool,
+    /// `--limit`.
+    pub limits: limits::Limits,
 }
 
 /// Reads the files that a model names. Only the command line touches the disk.
@@ -92,7 +94,7 @@ pub struct Checked {
 
 /// The model that a text describes, with the settings of this run. Data files that it names are added to `sources`.
 pub fn check(ast: &Ast, sources: &mut SourceMap, files: &mut dyn Files, settings: &Settings) -> Checked {
-    let mut context = context::Context::new(sources, settings.params.clone());
+    let mut context = context::Context::new(sources, settings);
     declare::declare(&mut context, ast);
     define::define(&mut context);
     behaviour::fill_agents(&mut context);

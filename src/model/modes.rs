@@ -12,9 +12,11 @@ impl<'a> Context<'a> {
     /// Adds the modes among these parts of a mode's text.
     pub fn declare_modes(&mut self, ty: TypeId, parent: ModeId, items: impl Iterator<Item = &'a BodyItem>) {
         let mut initial: Option<(ModeId, Span)> = None;
+        let mut names: FxHashMap<&'a str, Span> = FxHashMap::default();
         for item in items {
             let BodyItem::Mode(mode) = item else { continue };
-            let id = self.declare_mode(ty, parent, mode);
+            let id = self.declare_mode(ty, parent, mode, &names);
+            names.entry(&mode.name.text).or_insert(mode.name.span);
             if let Some(span) = mode.initial {
                 match initial {
                     Some((_, first)) => {
@@ -40,15 +42,20 @@ impl<'a> Context<'a> {
         if mode.parent.is_none() { format!("agent `{}`", mode.name) } else { format!("mode `{}`", mode.path) }
     }
 
-    fn declare_mode(&mut self, ty: TypeId, parent: ModeId, item: &'a ast::Mode) -> ModeId {
+    /// `twins` are the names of the modes beside it, with their places.
+    fn declare_mode(
+        &mut self,
+        ty: TypeId,
+        parent: ModeId,
+        item: &'a ast::Mode,
+        twins: &FxHashMap<&'a str, Span>,
+    ) -> ModeId {
         let modes = &self.model.types[ty].modes;
         let depth = modes[parent].depth + 1;
         let outer = &modes[parent].path;
         let path =
             if outer.is_empty() { item.name.text.clone() } else { format!("{outer}.{}", item.name.text) };
-        let twin = modes[parent].children.iter().copied().find(|&child| modes[child].name == item.name.text);
-        if let Some(twin) = twin {
-            let first = modes[twin].span;
+        if let Some(&first) = twins.get(item.name.text.as_str()) {
             self.report(NameError::Taken { name: path.clone(), span: item.name.span, first });
         }
         if depth == 2 {

@@ -14,7 +14,6 @@ use super::draw::Given;
 use super::error::{FileError, LimitError, SystemError, TypeError, ValueError};
 use super::initial::Initials;
 use super::ir::{Block, ModeId, TypeId};
-use super::limits::AGENTS_MAX;
 use super::plan::{Plan, Source};
 use super::suggest::closest;
 use super::table::{self, Header, Wanted};
@@ -52,6 +51,7 @@ pub(super) fn populate<'a>(
         context.from_data.extend(plan.given_by_data());
     }
     context.model.population.fixed = context.fixed(&plans);
+    context.check_values();
     if !context.has_errors() {
         context.make(&plans, initials);
     }
@@ -71,6 +71,20 @@ impl<'a> Context<'a> {
             all.filter(|(_, fixed)| **fixed).map(move |(k, _)| (ty, k)).collect::<Vec<_>>()
         };
         self.model.types.indices().flat_map(of_type).collect()
+    }
+
+    /// Refuses agents that hold too many numbers together, before there are any.
+    fn check_values(&mut self) {
+        let most = self.model.limits.values_max;
+        let mut values = 0usize;
+        for block in &self.model.population.blocks {
+            let ty = &self.model.types[block.ty];
+            let each = ty.params.len() + ty.states.len() + ty.discretes.len() + ty.links.len();
+            values = values.saturating_add(each.saturating_mul(block.count));
+            if values > most {
+                return self.report(LimitError::Values { what: "in all agents", most, span: block.span });
+            }
+        }
     }
 
     fn plan(
@@ -120,9 +134,10 @@ impl<'a> Context<'a> {
             array: constructor.count.is_some(),
             span: item.name.span,
         });
-        if total + count > AGENTS_MAX {
-            let count = (total + count) as f64;
-            self.report(LimitError::Agents { count, most: AGENTS_MAX, span: item.span });
+        let most = self.model.limits.agents_max;
+        if total.saturating_add(count) > most {
+            let count = total as f64 + count as f64;
+            self.report(LimitError::Agents { count, most, span: item.span });
         }
         Some(plan)
     }
@@ -375,8 +390,9 @@ impl<'a> Context<'a> {
                     self.report(ValueError::BadCount { value: count, span: expr.span });
                     return None;
                 }
-                if count > AGENTS_MAX as f64 {
-                    self.report(LimitError::Agents { count, most: AGENTS_MAX, span: expr.span });
+                let most = self.model.limits.agents_max;
+                if count > most as f64 {
+                    self.report(LimitError::Agents { count, most, span: expr.span });
                     return None;
                 }
                 Some(Some(count as usize))
@@ -393,7 +409,9 @@ impl<'a> Context<'a> {
         count: Option<usize>,
     ) -> Option<usize> {
         let text = &self.sources.file(data.file).text;
-        match table::read_rows(data.file, text, &data.header, wanted, count.unwrap_or(AGENTS_MAX + 1)) {
+        let most = self.model.limits.agents_max;
+        match table::read_rows(data.file, text, &data.header, wanted, count.unwrap_or(most.saturating_add(1)))
+        {
             Ok(rows) => {
                 plan.columns = rows.values;
                 if let Some(needed) = count.filter(|&needed| rows.count < needed) {

@@ -2,9 +2,16 @@
 
 use std::cmp::Reverse;
 
+/// Among more names than these nothing is suggested: it would take longer than all else.
+const CANDIDATES_MAX: usize = 2_000;
+
 /// The closest of the candidates, if it is close enough to be what was meant; of two the one that begins alike,
 /// then the first in the alphabet.
 pub(super) fn closest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<String> {
+    let candidates: Vec<&str> = candidates.into_iter().take(CANDIDATES_MAX + 1).collect();
+    if candidates.len() > CANDIDATES_MAX {
+        return None;
+    }
     let allowed = (name.chars().count() / 3).max(1);
     candidates
         .into_iter()

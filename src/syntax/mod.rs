@@ -30,12 +30,16 @@ pub const MAX_HEIGHT: usize = 1024;
 /// The size of the largest file, in bytes.
 pub const MAX_FILE_BYTES: usize = 16 << 20;
 
+/// How many errors of one text are told.
+const ERRORS_MAX: usize = 1_000;
+
 /// The stack on which this floor recurses: several times what the deepest text needs in a build without optimisation.
 const STACK_BYTES: usize = 64 << 20;
 
 /// The syntax tree of a text, or what is wrong with the text.
 pub fn parse(file: FileId, text: &str) -> Result<Ast, Vec<Diagnostic>> {
-    on_large_stack(|| read(file, text)).map_err(|errors| errors.iter().map(SyntaxError::diagnostic).collect())
+    on_large_stack(|| read(file, text))
+        .map_err(|errors| errors.iter().take(ERRORS_MAX).map(SyntaxError::diagnostic).collect())
 }
 
 fn read(file: FileId, text: &str) -> Result<Ast, Vec<SyntaxError>> {

@@ -233,6 +233,29 @@ fn what_cannot_be_written_ends_with_2() {
 
 #[cfg(target_os = "linux")]
 #[test]
+fn what_is_no_model_ends_with_2_and_says_why() {
+    let here = folder(&[("empty.hy", "")]);
+    expect(&hyc(&here, &["check", "empty.hy"]), 0, &["empty.hy: no errors"]);
+    expect(&hyc(&here, &["run", "empty.hy"]), 2, &["the run has no end"]);
+    fs::write(here.path().join("latin.hy"), b"param a = 1 // caf\xe9").unwrap();
+    expect(&hyc(&here, &["check", "latin.hy"]), 2, &["cannot read `latin.hy`", "UTF-8"]);
+    expect(&hyc(&here, &["check", "."]), 2, &["cannot read `.`", "directory"]);
+    expect(&hyc(&here, &["check", "/dev/zero"]), 2, &["cannot read `/dev/zero`", "larger than 32 MiB"]);
+    expect(&hyc(&here, &["check", "empty.hy/inside.hy"]), 2, &["cannot read"]);
+}
+
+#[test]
+fn limits_have_names() {
+    let here = folder(&[("ball.hy", BALL)]);
+    expect(&hyc(&here, &["check", "ball.hy", "--limit", "max_agents=2"]), 1, &["HY0291"]);
+    expect(&hyc(&here, &["run", "ball.hy", "--limit", "max_operations=3"]), 1, &["HY0307"]);
+    expect(&hyc(&here, &["show", "ball.hy", "--stage", "model", "--limit", "max_values=3"]), 1, &["HY0296"]);
+    expect(&hyc(&here, &["run", "ball.hy", "--limit", "max_steps=3"]), 3, &["HY0508"]);
+    let wrong = ["there is no limit `agents`", "max_agents", "max_pieces"];
+    expect(&hyc(&here, &["run", "ball.hy", "--limit", "agents=3"]), 2, &wrong);
+}
+
+#[test]
 fn a_full_disk_ends_with_2_and_names_the_file() {
     let folder = folder(&[("ball.hy", BALL)]);
     for output in ["--events", "--final", "--stats", "--record"] {

@@ -36,3 +36,4 @@ mod draws;
 mod units;
 mod robust;
 mod aggregates;
+mod limits;

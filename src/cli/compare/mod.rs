@@ -14,7 +14,7 @@ use super::algorithm::algorithm;
 use super::arguments::CompareArguments;
 use super::input::{Loaded, load};
 use super::refusal::{refuse_aggregates, refuse_endless};
-use super::run::{compile, limits_of};
+use super::run::compile;
 use super::terminal::{say, tell};
 use super::{Exit, Refused};
 use crate::codegen::program::Program;
@@ -33,7 +33,7 @@ pub const WITHIN: f64 = 1e-3;
 
 /// Runs, compares, prints.
 pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit, Refused> {
-    let limits = limits_of(&arguments.limits)?;
+    let limits = super::limits::Limits::new(&arguments.limits)?.run;
     let algorithms: Vec<Algorithm> = (arguments.algorithms.iter())
         .map(|&name| algorithm(name, &arguments.paper, true))
         .collect::<Result<_, _>>()?;
@@ -72,6 +72,7 @@ fn run_cell(
         params: cell.params.clone(),
         until: arguments.until,
         seed: cell.seed,
+        limits: super::limits::Limits::new(&arguments.limits)?.model,
         ..Settings::default()
     };
     let Loaded { sources, diagnostics, model, .. } = match load(&arguments.model, &settings)? {

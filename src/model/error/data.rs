@@ -229,6 +229,8 @@ impl From<FileError> for Diagnostic {
 pub(in crate::model) enum LimitError {
     /// More agents than the limit.
     Agents { count: f64, most: usize, span: Span },
+    /// More numbers than the limit.
+    Values { what: &'static str, most: usize, span: Span },
     /// Constants that take too long.
     Steps { span: Span },
     /// Definitions that are looked up inside each other, many deep.
@@ -241,11 +243,17 @@ impl From<LimitError> for Diagnostic {
             LimitError::Agents { count, most, span } => {
                 Diagnostic::error("HY0291", format!("{count} agents are more than the limit of {most}"))
                     .label(span, "too many")
+                    .help(raise("max_agents"))
+            }
+            LimitError::Values { what, most, span } => {
+                Diagnostic::error("HY0296", format!("more than {most} numbers {what}"))
+                    .label(span, "too many, with what comes before")
+                    .help(raise("max_values"))
             }
             LimitError::Steps { span } => {
                 Diagnostic::error("HY0292", "the constants of this model take too long to work out")
                     .label(span, "gave up here")
-                    .help("functions that call each other twice or more double the work at every level")
+                    .help("functions that call each other twice or more double the work at every level; or raise the limit: `--limit max_evaluations=N`")
             }
             LimitError::Depth { span } => {
                 Diagnostic::error("HY0294", "this is defined through too many other definitions")
@@ -254,6 +262,11 @@ impl From<LimitError> for Diagnostic {
             }
         }
     }
+}
+
+/// How a limit is raised.
+fn raise(name: &str) -> String {
+    format!("if it is meant so, raise the limit: `--limit {name}=N`")
 }
 
 fn in_words(value: f64) -> &'static str {

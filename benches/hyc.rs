@@ -1,0 +1,181 @@
+//! What the compiler and the simulator take: `cargo bench` prints tables, in a few minutes. Times are medians of processor time.
+//!
+//! Compiling is from text to machine code. A right-hand side is one evaluation of an agent's flow, by the interpreter and by machine code.
+//! The bumper problem is run to t = 20 s; its steps are all accepted and rejected ones.
+
+mod problem;
+
+use std::collections::HashMap;
+use std::hint::black_box;
+use std::io;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use hyc::base::SourceMap;
+use hyc::calculus;
+use hyc::codegen::program::Program;
+use hyc::codegen::{self, Backend};
+use hyc::model::{self, Files, Settings};
+use hyc::runtime::observe::{Event, Last, Observer, Outcome, Progress, Row};
+use hyc::runtime::{self, Limits};
+use hyc::syntax;
+
+/// The data files of a model, by name.
+#[derive(Default)]
+struct Shelf(HashMap<String, Vec<u8>>);
+
+impl Files for Shelf {
+    fn read(&mut self, path: &str) -> io::Result<Vec<u8>> {
+        match self.0.get(path) {
+            Some(text) => Ok(text.clone()),
+            None => std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("models").join(path)),
+        }
+    }
+}
+
+/// Takes what a run says, and keeps nothing.
+struct Silence;
+
+impl Observer for Silence {
+    fn event(&mut self, event: &Event<'_>) -> io::Result<()> {
+        black_box(event);
+        Ok(())
+    }
+
+    fn sample(&mut self, _record: usize, row: &Row<'_>) -> io::Result<()> {
+        black_box(row);
+        Ok(())
+    }
+
+    fn last(&mut self, last: &Last<'_>) -> io::Result<()> {
+        black_box(last);
+        Ok(())
+    }
+
+    fn progress(&mut self, _progress: &Progress) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+fn compile(text: &str, shelf: &mut Shelf, settings: &Settings, backend: Backend) -> Program {
+    let mut sources = SourceMap::default();
+    let file = sources.add("bench.hy", text);
+    let tree = syntax::parse(file, text).expect("a shipped model");
+    let model = model::check(&tree, &mut sources, shelf, settings).model.expect("a shipped model");
+    let system = calculus::derive(&model).expect("a shipped model");
+    codegen::compile(system, backend).expect("a shipped model")
+}
+
+fn simulate(program: &Program) -> Outcome {
+    runtime::simulate(program, &Limits::default(), &AtomicBool::new(false), &mut Silence)
+}
+
+/// The median of so many runs, in seconds.
+fn median(runs: usize, mut work: impl FnMut()) -> f64 {
+    work();
+    let mut times: Vec<f64> = (0..runs)
+        .map(|_| {
+            let begun = Instant::now();
+            work();
+            begun.elapsed().as_secs_f64()
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+fn models() -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let mut models: Vec<(String, String)> = std::fs::read_dir(folder)
+        .expect("the folder of models")
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.extension().is_some_and(|extension| extension == "hy"))
+        .map(|path| {
+            let name = path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
+            (name, std::fs::read_to_string(path).expect("a model"))
+        })
+        .collect();
+    models.sort();
+    models
+}
+
+/// Text to program, and one run, for each shipped model.
+fn compile_times() {
+    println!("\n| model | check (ms) | compile, interpreter (ms) | compile, machine code (ms) | run (ms) |");
+    println!("|---|---|---|---|---|");
+    for (name, text) in models() {
+        let settings = Settings::default();
+        let mut shelf = Shelf::default();
+        let check = median(9, || {
+            let mut sources = SourceMap::default();
+            let file = sources.add("bench.hy", text.as_str());
+            let tree = syntax::parse(file, &text).expect("a shipped model");
+            black_box(model::check(&tree, &mut sources, &mut shelf, &settings));
+        });
+        let [interpreter, jit] = [Backend::Interpreter, Backend::Jit]
+            .map(|backend| median(9, || drop(black_box(compile(&text, &mut shelf, &settings, backend)))));
+        let program = compile(&text, &mut shelf, &settings, Backend::Jit);
+        let run = median(3, || drop(black_box(simulate(&program))));
+        let [check, interpreter, jit, run] = [check, interpreter, jit, run].map(|seconds| seconds * 1e3);
+        println!("| {name} | {check:.2} | {interpreter:.2} | {jit:.2} | {run:.1} |");
+    }
+}
+
+/// The bumper problem with N cars.
+fn bumper(n: usize, backend: Backend) -> Program {
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("models/bumper.hy"));
+    let mut shelf = Shelf::default();
+    shelf.0.insert("cars.csv".into(), problem::csv(&problem::cars(n, 1)).into_bytes());
+    let params = vec![("N".into(), n.to_string()), ("data".into(), "cars.csv".into())];
+    compile(&text.expect("a model"), &mut shelf, &Settings { params, ..Settings::default() }, backend)
+}
+
+/// The interpreter against machine code, a right-hand side and a whole run.
+fn back_ends() {
+    println!("\n| bumper, N = 20 | interpreter | machine code | ratio |");
+    println!("|---|---|---|---|");
+    let programs = [Backend::Interpreter, Backend::Jit].map(|backend| bumper(20, backend));
+    let mut steps = 0;
+    let [interpreter, jit] = programs.each_ref().map(|program| {
+        median(9, || {
+            let outcome = simulate(program);
+            steps = outcome.stats.steps + outcome.stats.rejected;
+        })
+    });
+    println!("| run (ms) | {:.2} | {:.2} | {:.2} |", interpreter * 1e3, jit * 1e3, interpreter / jit);
+    let per_step = |seconds: f64| seconds * 1e9 / steps as f64;
+    println!(
+        "| run, per step (ns) | {:.0} | {:.0} | {:.2} |",
+        per_step(interpreter),
+        per_step(jit),
+        interpreter / jit
+    );
+}
+
+/// The bumper problem against the number of cars.
+fn sizes() {
+    println!("\n| N | compile (ms) | run (ms) | steps | events | run / N (us) |");
+    println!("|---|---|---|---|---|---|");
+    for n in [2, 5, 10, 20, 50, 100, 200, 500] {
+        let begun = Instant::now();
+        let program = bumper(n, Backend::Jit);
+        let compiled = begun.elapsed().as_secs_f64() * 1e3;
+        let (mut steps, mut events) = (0, 0);
+        let run = median(if n > 100 { 3 } else { 5 }, || {
+            let outcome = simulate(&program);
+            (steps, events) = (outcome.stats.steps + outcome.stats.rejected, outcome.stats.events);
+        });
+        println!(
+            "| {n} | {compiled:.1} | {:.2} | {steps} | {events} | {:.1} |",
+            run * 1e3,
+            run * 1e6 / n as f64
+        );
+    }
+}
+
+fn main() {
+    compile_times();
+    back_ends();
+    sizes();
+}
