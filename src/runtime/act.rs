@@ -45,8 +45,10 @@ pub struct Move {
 /// All that one firing does, computed before anything is written.
 #[derive(Clone, Debug, Default)]
 pub struct Effect {
-    /// Writes of exit and transition actions, in order.
+    /// Writes of exit actions, then of the transition's own, in order.
     pub writes: Vec<Write>,
+    /// Writes of the exit actions of agents that the transition's own actions send to another mode.
+    exits: Vec<Write>,
     /// Changes of mode.
     pub moves: Vec<Move>,
 }
@@ -80,6 +82,11 @@ impl Engine<'_, '_> {
         }
         let own = self.guards.roots(instance);
         self.run_list(&transition.actions, slots, &own, &transition.label, &mut effect)?;
+        if !effect.exits.is_empty() {
+            // An interaction changes modes by actions: all exits stand before them (rule 4).
+            let actions = std::mem::replace(&mut effect.writes, std::mem::take(&mut effect.exits));
+            effect.writes.extend(actions);
+        }
         Ok(effect)
     }
 
@@ -150,7 +157,9 @@ impl Engine<'_, '_> {
                 }
                 ActionStep::Goto { slot, target, .. } => {
                     let change = self.route(slots[*slot], 0, *target);
-                    self.exit(&change, effect)?;
+                    let mut exit = Effect::default();
+                    self.exit(&change, &mut exit)?;
+                    effect.exits.append(&mut exit.writes);
                     effect.moves.push(change);
                 }
                 ActionStep::Stop { reason, .. } => {

@@ -163,7 +163,7 @@ impl<'p> Engine<'p, '_> {
     fn true_exactly_now(&mut self, instance: u32, atom: &Atom, slots: &Slots) -> bool {
         let kernel = self.program.kernel(atom.value);
         let [exactly, after] =
-            [Side::Exact, Side::After].map(|side| self.truths().gather(instance, kernel, slots, side));
+            [Side::At, Side::After].map(|side| self.truths().gather(instance, kernel, slots, side));
         let g = truth::evaluate(&self.agents, &mut self.present, kernel, slots, &exactly);
         if g == truth::evaluate(&self.agents, &mut self.present, kernel, slots, &after) {
             return false;
@@ -374,8 +374,8 @@ impl<'p> Engine<'p, '_> {
         let Some(transition) = self.guards.definition(instance).origin.transition() else { return false };
         match &transition.trigger {
             Trigger::Every { .. } => false,
-            Trigger::After { .. } => state.aged && self.truths().holds(instance, Side::At),
-            Trigger::When(_) => self.truths().holds(instance, Side::At),
+            Trigger::After { .. } => state.aged && self.truths().holds_now(instance),
+            Trigger::When(_) => self.truths().holds_now(instance),
         }
     }
 
@@ -383,7 +383,7 @@ impl<'p> Engine<'p, '_> {
     pub fn rearm(&mut self, instance: u32) {
         let state = &self.guards.instances[instance as usize];
         // What was true at the instant is so until its end, whatever else happens in it.
-        if state.active && !state.armed && !self.truths().holds(instance, Side::At) {
+        if state.active && !state.armed && !self.truths().holds_now(instance) {
             self.guards.instances[instance as usize].armed = true;
         }
     }

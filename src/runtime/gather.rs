@@ -123,9 +123,8 @@ impl Engine<'_, '_> {
             }
             claims |= matches!(self.guards.definition(instance).origin, Origin::Claim(_));
         }
-        candidates.retain(|candidate| {
-            candidate.pulse.is_none() || self.truths().holds(candidate.instance, Side::At)
-        });
+        candidates
+            .retain(|candidate| candidate.pulse.is_none() || self.truths().holds_now(candidate.instance));
         if !candidates.is_empty() {
             self.instant(candidates)?;
         }

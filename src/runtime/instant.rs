@@ -88,9 +88,7 @@ impl Engine<'_, '_> {
     fn may_fire(&self, candidate: Candidate) -> bool {
         let state = &self.guards.instances[candidate.instance as usize];
         if let Some(arming) = candidate.pulse {
-            return state.active
-                && state.arming == arming
-                && self.truths().holds(candidate.instance, Side::At);
+            return state.active && state.arming == arming && self.truths().holds_now(candidate.instance);
         }
         self.enabled(candidate.instance)
     }
@@ -132,7 +130,7 @@ impl Engine<'_, '_> {
     }
 
     fn rank(&mut self, candidate: Candidate) -> Ranked {
-        let slots = self.truths().witnesses(candidate.instance, Side::At);
+        let slots = self.truths().witnesses(candidate.instance);
         let (transition, depth) = match self.guards.definition(candidate.instance).origin {
             Origin::Transition(transition) => (transition, transition.depth),
             Origin::Pair(pair) => (&pair.transition, 0),

@@ -7,14 +7,12 @@ use crate::runtime::guards::{Guards, allowed};
 use crate::runtime::population::{Agents, Slots};
 use crate::runtime::present::{Depth, Present, depth_read};
 
-/// Which truth of an atom that changes at the present instant counts.
+/// Which truth of an atom that changes at the present instant counts. A condition holds in an instant if it does on
+/// either side: `x >= 0 and x < 0` never does, though each of its comparisons is true at or just after the zero of x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// That at the instant: a closed comparison is true on its boundary, a crossing at its zero.
+    /// That at the instant: on its boundary `<=` is true and `<` false, a crossing is true at its zero.
     At,
-    /// That at the very instant: on its boundary a closed comparison is true, an open one false. Members of aggregates are
-    /// asked on this side and just after: either may make a comparison of the aggregate true at the instant.
-    Exact,
     /// That just after it.
     After,
 }
@@ -42,7 +40,12 @@ pub struct Truths<'a, 'p> {
 }
 
 impl<'p> Truths<'_, 'p> {
-    /// Whether the condition of an instance holds.
+    /// Whether the condition of an instance holds at the present instant or just after it.
+    pub fn holds_now(&self, instance: u32) -> bool {
+        self.holds(instance, Side::At) || self.holds(instance, Side::After)
+    }
+
+    /// Whether the condition of an instance holds on one side of the present instant.
     pub fn holds(&self, instance: u32, side: Side) -> bool {
         match self.guards.definition(instance).guard {
             None => true,
@@ -78,17 +81,13 @@ impl<'p> Truths<'_, 'p> {
         let state = &self.guards.atoms[index];
         match (relation, at.side) {
             (Relation::Crossing, side) => side == Side::At && state.touched,
-            (Relation::NonPositive, Side::Exact) if state.rooted => true,
-            (Relation::Negative, Side::Exact) if state.rooted => false,
-            (Relation::NonPositive | Relation::Negative, Side::At | Side::Exact) => {
-                state.truth || state.touched
-            }
+            (Relation::NonPositive, Side::At) => state.truth || state.touched,
+            (Relation::Negative, Side::At) => state.truth && !state.rooted,
             (Relation::NonPositive | Relation::Negative, Side::After) => state.truth,
         }
     }
 
-    /// A test of auxiliary columns, perhaps of aggregates: at the instant it is true by the members that they have then or
-    /// just after.
+    /// A test of auxiliary columns, perhaps of aggregates with the members that they have on that side.
     fn discrete(&self, at: At, function: FunctionId, slots: &Slots) -> bool {
         let kernel = self.agents.program.kernel(function);
         let holds = |folds: &[Folded<'_>]| {
@@ -99,15 +98,7 @@ impl<'p> Truths<'_, 'p> {
             kernel.eval(&fold::views(slots, &leaves, &row), time, &mut out);
             out[0] != 0.0 && !out[0].is_nan()
         };
-        if self.guards.definition(at.instance).folds.is_empty() {
-            return holds(&[]);
-        }
-        match at.side {
-            Side::At => [Side::Exact, Side::After]
-                .into_iter()
-                .any(|side| holds(&self.gather(at.instance, kernel, slots, side))),
-            side @ (Side::Exact | Side::After) => holds(&self.gather(at.instance, kernel, slots, side)),
-        }
+        holds(&self.gather(at.instance, kernel, slots, at.side))
     }
 
     /// The aggregates that a kernel of an instance reads, with the members that they have on one side of the instant.
@@ -137,7 +128,7 @@ impl<'p> Truths<'_, 'p> {
     }
 
     /// The slots of an instance whose guard holds, with the witnesses of its outermost `exists` (rule 2).
-    pub fn witnesses(&self, instance: u32, side: Side) -> Slots {
+    pub fn witnesses(&self, instance: u32) -> Slots {
         let mut slots = self.guards.slots(self.agents, instance);
         let definition = self.guards.definition(instance);
         let wanted = definition.origin.transition().map_or(&[][..], |transition| &transition.witnesses);
@@ -145,6 +136,7 @@ impl<'p> Truths<'_, 'p> {
             return slots;
         }
         let guard = definition.guard.expect("witnesses come from a guard");
+        let side = if self.holds(instance, Side::At) { Side::At } else { Side::After };
         let terms = match &guard.condition {
             Condition::And(terms) => terms.as_slice(),
             other => std::slice::from_ref(other),

@@ -8,6 +8,7 @@ pub mod dice;
 mod evaluate;
 mod world;
 mod boundary;
+mod point;
 mod reference;
 pub mod generate;
 mod compare;

@@ -12,7 +12,7 @@ use hyc::runtime::limits::Limits;
 use hyc::runtime::observe::{Cell, End, Event, Last, Observer, Progress};
 
 use super::generate;
-use super::reference::{self, Row};
+use super::reference::{self, Pace, Row};
 
 /// The reference's step, s; a model counts only if half of it makes no difference.
 const STEP: f64 = 0.01;
@@ -22,6 +22,8 @@ const TIME: f64 = 1e-5;
 const TIME_OF_ITSELF: f64 = 2e-6;
 /// How much other rates must make no difference to a model whose two histories differ.
 const NUDGE: f64 = 1e-9;
+/// How far from what is not robust a comparison stops, s.
+const MARGIN: f64 = 1e-3;
 /// How far states may be apart at the end.
 const STATE: f64 = 1e-4;
 
@@ -39,8 +41,14 @@ pub enum Verdict {
 struct Story {
     rows: Vec<Row>,
     ends: Vec<(String, Vec<f64>)>,
-    error: Option<String>,
+    /// Up to when it counts, s.
+    until: f64,
+    /// How and when it failed.
+    error: Option<(f64, String)>,
 }
+
+/// A difference: when it shows, s; infinite if in the states at the end only. In words.
+type Difference = (f64, String);
 
 /// Runs a model both ways, the engine by this method.
 pub fn compare(text: &str, integrator: Integrator) -> Verdict {
@@ -48,41 +56,61 @@ pub fn compare(text: &str, integrator: Integrator) -> Verdict {
         Ok(model) => model,
         Err(found) => return Verdict::Different(format!("the model is refused:\n{text}\n{found}")),
     };
-    let refer = |step: f64, nudge: f64| {
-        let history = reference::run(&model, step, nudge, generate::is_ordered)?;
-        let world = history.world;
+    let refer = |pace: Pace| {
+        let reference::History { rows, until, world } = reference::run(&model, pace, generate::is_ordered);
         let end = |agent: &super::world::Agent| {
             let ty = &model.types[agent.ty];
             let mut values = world.states[agent.first..agent.first + ty.states.len()].to_vec();
             values.extend(&agent.discretes);
             (ty.modes[agent.mode].path.clone(), values)
         };
-        Some(Story { rows: history.rows, ends: world.agents.iter().map(end).collect(), error: None })
+        Story { rows, ends: world.agents.iter().map(end).collect(), until, error: None }
     };
-    let (Some(coarse), Some(fine)) = (refer(STEP, 0.0), refer(0.5 * STEP, 0.0)) else {
-        return Verdict::Skipped;
-    };
-    if difference(&coarse, &fine, TIME_OF_ITSELF).is_some() {
-        return Verdict::Skipped;
-    }
-    let ours = engine(&model);
-    let Some(first) = difference(&ours, &fine, TIME) else { return Verdict::Same(fine.rows.len()) };
-    // The reference may have missed an event between two steps, or rounding may decide what happens.
-    for (step, nudge) in [(0.05 * STEP, 0.0), (0.5 * STEP, NUDGE), (0.5 * STEP, -NUDGE)] {
-        let robust =
-            refer(step, nudge).is_some_and(|again| difference(&again, &fine, TIME_OF_ITSELF).is_none());
-        if !robust {
-            return Verdict::Skipped;
+    let end = model.run.until.expect("the generator writes an end");
+    let usual = Pace { step: STEP, nudge: 0.0, wary: false };
+    let half = Pace { step: 0.5 * STEP, ..usual };
+    let fine = refer(half);
+    let mut until = agreement(&refer(usual), &fine, end);
+    let ours = engine(&model, end);
+    if until > 0.0 && difference(&ours, &fine, TIME, until).is_some() {
+        // The reference may have missed an event between two steps, or rounding may decide what happens.
+        let shorter = Pace { step: 0.05 * STEP, ..usual };
+        let nudges = [NUDGE, -NUDGE].map(|nudge| Pace { nudge, ..half });
+        for pace in [Pace { wary: true, ..half }, shorter, nudges[0], nudges[1]] {
+            until = agreement(&refer(pace), &fine, until);
         }
     }
-    let mut story = format!("{text}\n{first}\n");
+    let events = fine.rows.iter().filter(|row| row.time < until).count();
+    if until <= 0.0 || until < end && events == 0 {
+        return Verdict::Skipped;
+    }
+    let Some((_, first)) = difference(&ours, &fine, TIME, until) else { return Verdict::Same(events) };
+    let mut story = format!("{text}\n{first} (compared up to {until})\n");
     for (who, rows) in [("engine", &ours.rows), ("reference", &fine.rows)] {
         let _ = writeln!(story, "{who}:");
-        for row in rows {
+        for row in rows.iter().filter(|row| row.time < until) {
             let _ = writeln!(story, "  {}", line(row));
         }
     }
     Verdict::Different(story)
+}
+
+/// Up to when two histories of the reference agree, and a little less, s: no event lies near that time. 0 if they do not.
+fn agreement(other: &Story, fine: &Story, until: f64) -> f64 {
+    let common = until.min(fine.until).min(other.until);
+    let mut until = match difference(other, fine, TIME_OF_ITSELF, common) {
+        None if common == until => return until,
+        None => common,
+        Some((time, _)) if time == f64::INFINITY => return 0.0,
+        Some((time, _)) => time,
+    };
+    until -= MARGIN;
+    for row in fine.rows.iter().rev() {
+        if (row.time - until).abs() < MARGIN {
+            until = row.time - MARGIN;
+        }
+    }
+    until
 }
 
 fn line(row: &Row) -> String {
@@ -92,11 +120,8 @@ fn line(row: &Row) -> String {
 }
 
 /// The first difference: agents' own logs are compared, for the order of events of unrelated agents is free.
-fn difference(ours: &Story, theirs: &Story, tolerance: f64) -> Option<String> {
-    if let Some(error) = &ours.error {
-        return Some(error.clone());
-    }
-    let mut first: Option<(f64, String)> = None;
+fn difference(ours: &Story, theirs: &Story, tolerance: f64, until: f64) -> Option<Difference> {
+    let mut first: Option<Difference> = ours.error.clone().filter(|(time, _)| *time < until);
     let mut found = |time: f64, text: String| {
         if first.as_ref().is_none_or(|(before, _)| time < *before) {
             first = Some((time, text));
@@ -104,7 +129,7 @@ fn difference(ours: &Story, theirs: &Story, tolerance: f64) -> Option<String> {
     };
     for agent in 0..theirs.ends.len() {
         let own = |story: &Story| -> Vec<Row> {
-            let concerns = |row: &&Row| row.agent == agent || row.other == Some(agent);
+            let concerns = |row: &&Row| row.time < until && (row.agent == agent || row.other == Some(agent));
             story.rows.iter().filter(concerns).cloned().collect()
         };
         let (a, b) = (own(ours), own(theirs));
@@ -122,13 +147,14 @@ fn difference(ours: &Story, theirs: &Story, tolerance: f64) -> Option<String> {
             found(time, format!("agent {agent}, its event {k}: {} | {}", say(a.get(k)), say(b.get(k))));
         }
     }
-    for (agent, (a, b)) in ours.ends.iter().zip(&theirs.ends).enumerate() {
+    let to_the_end = ours.until <= until && theirs.until <= until;
+    for (agent, (a, b)) in ours.ends.iter().zip(&theirs.ends).enumerate().filter(|_| to_the_end) {
         let near = |(a, b): (&f64, &f64)| (a - b).abs() <= STATE * (1.0 + b.abs());
         if a.0 != b.0 || !a.1.iter().zip(&b.1).all(near) {
             found(f64::INFINITY, format!("agent {agent} at the end: {a:?} | {b:?}"));
         }
     }
-    first.map(|(_, text)| text)
+    first
 }
 
 /// The model of a text.
@@ -148,21 +174,24 @@ fn checked(text: &str, integrator: Integrator) -> Result<Model, String> {
 }
 
 /// What the engine makes of it.
-fn engine(model: &Model) -> Story {
+fn engine(model: &Model, until: f64) -> Story {
     let mut writer = Writer { rows: Vec::new(), ends: Vec::new() };
-    let run = |writer: &mut Writer| -> Result<(), Diagnostic> {
+    let mut time = 0.0;
+    let mut run = |writer: &mut Writer| -> Result<(), Diagnostic> {
         let system = hyc::calculus::derive(model).map_err(|mut found| found.remove(0))?;
         let program = hyc::codegen::compile(system, Backend::Interpreter)?;
         let limits = Limits { steps_max: 10_000_000, ..Limits::default() };
-        match hyc::runtime::simulate(&program, &limits, &AtomicBool::new(false), writer).end {
+        let outcome = hyc::runtime::simulate(&program, &limits, &AtomicBool::new(false), writer);
+        time = outcome.time;
+        match outcome.end {
             End::Until => Ok(()),
             End::Error(found) => Err(*found),
             end => panic!("no model ends so: {end:?}"),
         }
     };
-    let error =
-        run(&mut writer).err().map(|d| format!("{}: {} {:?} {:?}", d.code, d.title, d.labels, d.notes));
-    Story { rows: writer.rows, ends: writer.ends, error }
+    let error = run(&mut writer).err();
+    let error = error.map(|d| (time, format!("{}: {} {:?} {:?}", d.code, d.title, d.labels, d.notes)));
+    Story { rows: writer.rows, ends: writer.ends, until, error }
 }
 
 /// No model has data.

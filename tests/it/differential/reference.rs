@@ -10,6 +10,7 @@ use hyc::model::ir::{
 
 use super::boundary::Boundary;
 use super::evaluate::Scope;
+use super::point;
 use super::world::World;
 
 /// A row of the event log.
@@ -31,12 +32,14 @@ pub struct Row {
 pub struct History {
     /// Its log.
     pub rows: Vec<Row>,
+    /// Up to when it is worth comparing, s: its end, or where it does too much, or nothing that is robust.
+    pub until: f64,
     /// Everything at the end.
     pub world: World,
 }
 
 /// More branches of flows than such a model has: the flows on both sides push back.
-const MANY_BRANCHES: usize = 100;
+const MANY_BRANCHES: usize = 300;
 /// More events than a model worth comparing has in a run, and in an instant.
 const MANY: usize = 400;
 const MANY_IN_AN_INSTANT: usize = 40;
@@ -78,15 +81,30 @@ struct Taken {
     writes: Vec<(usize, VarRef, f64)>,
 }
 
-/// Runs a model with steps of this size and rates so far beside the truth; none if it does more than is worth comparing. `ordered` says of an interaction
-/// whether its pairs are ordered.
-pub fn run(model: &Model, step: f64, nudge: f64, ordered: impl Fn(&str) -> bool) -> Option<History> {
-    let mut reference = Reference::new(model, nudge, ordered);
-    reference.begin()?;
-    while reference.world.time < reference.end {
-        reference.advance(step)?;
+/// How a model is run.
+#[derive(Clone, Copy)]
+pub struct Pace {
+    /// The length of steps, s.
+    pub step: f64,
+    /// How far rates are beside the truth; see [`World::nudge`].
+    pub nudge: f64,
+    /// Whether to give up where a guard hangs on a single point.
+    pub wary: bool,
+}
+
+/// Runs a model as far as it is worth comparing. `ordered` says of an interaction whether its pairs are ordered.
+pub fn run(model: &Model, pace: Pace, ordered: impl Fn(&str) -> bool) -> History {
+    let mut reference = Reference::new(model, pace.nudge, ordered);
+    let mut goes_on = reference.begin();
+    let mut until = 0.0;
+    while goes_on.is_some() && reference.world.time < reference.end {
+        until = reference.world.time;
+        goes_on = reference.advance(pace);
     }
-    Some(History { rows: reference.rows, world: reference.world })
+    if goes_on.is_some() {
+        until = reference.end;
+    }
+    History { rows: reference.rows, until, world: reference.world }
 }
 
 impl<'a> Reference<'a> {
@@ -234,25 +252,27 @@ impl<'a> Reference<'a> {
     }
 
     /// Flows to the end of the step or to the earliest thing that happens in it, and executes that.
-    fn advance(&mut self, step: f64) -> Option<()> {
+    fn advance(&mut self, pace: Pace) -> Option<()> {
         let active = (0..self.instances.len()).filter(|instance| self.is_active(*instance));
         let due = active.filter_map(|instance| self.due(instance)).filter(|due| *due > self.world.time);
-        let stop = due.fold(self.end.min(self.world.time + step), f64::min);
-        let branches = self.world.rates(self.model).1;
-        let happens = |world: &World| self.any_enabled(world) || world.rates(self.model).1 != branches;
-        let mut after = self.world.flow(self.model, stop);
-        if happens(&after) {
+        let stop = due.fold(self.end.min(self.world.time + pace.step), f64::min);
+        let (mut after, mut straight) = self.world.flow_with_branches(self.model, stop);
+        if !straight || self.any_enabled(&after) {
             let mut before = self.world.time;
             while after.time - before > 1e-13 * after.time.max(1.0) {
-                let middle = self.world.flow(self.model, 0.5 * (before + after.time));
+                let (middle, same) = self.world.flow_with_branches(self.model, 0.5 * (before + after.time));
                 if middle.time <= before || middle.time >= after.time {
                     break;
                 }
-                if happens(&middle) { after = middle } else { before = middle.time }
+                if !same || self.any_enabled(&middle) {
+                    (after, straight) = (middle, same);
+                } else {
+                    before = middle.time;
+                }
             }
         }
-        self.branchings += usize::from(after.rates(self.model).1 != branches);
-        if self.branchings > MANY_BRANCHES {
+        self.branchings += usize::from(!straight);
+        if self.branchings > MANY_BRANCHES || pace.wary && self.hangs_on_a_point(after.time) {
             return None;
         }
         self.world = after;
@@ -271,6 +291,18 @@ impl<'a> Reference<'a> {
         }
         self.arm();
         self.instant()
+    }
+
+    /// Whether a guard hangs on a single point between the present time and this one.
+    fn hangs_on_a_point(&self, end: f64) -> bool {
+        (0..self.instances.len()).filter(|instance| self.is_active(*instance)).any(|instance| {
+            let condition = match self.transition(instance).trigger {
+                Trigger::When(guard) | Trigger::After(_, Some(guard)) => guard,
+                Trigger::After(_, None) | Trigger::Every(..) => return false,
+            };
+            let (agents, pair) = (self.instances[instance].agents, self.is_pair(instance));
+            point::Guard { model: self.model, agents, pair, condition }.hangs_on_a_point(&self.world, end)
+        })
     }
 
     /// Rule 4: micro-steps until nothing is enabled.

@@ -85,16 +85,24 @@ impl World {
 
     /// The world one step of Runge and Kutta later, at a time given by the caller.
     pub fn flow(&self, model: &Model, time: f64) -> World {
+        self.flow_with_branches(model, time).0
+    }
+
+    /// The same, and whether all branches went the same way all along.
+    pub fn flow_with_branches(&self, model: &Model, time: f64) -> (World, bool) {
         let h = time - self.time;
         let mut stage = self.clone();
+        let (k1, branches) = self.rates(model);
+        let mut same = true;
         let mut ahead = |share: f64, rates: &[f64]| {
             stage.time = self.time + share * h;
             for ((x, start), rate) in stage.states.iter_mut().zip(&self.states).zip(rates) {
                 *x = start + share * h * rate;
             }
-            stage.rates(model).0
+            let (rates, there) = stage.rates(model);
+            same &= there == branches;
+            rates
         };
-        let k1 = self.rates(model).0;
         let k2 = ahead(0.5, &k1);
         let k3 = ahead(0.5, &k2);
         let k4 = ahead(1.0, &k3);
@@ -102,6 +110,7 @@ impl World {
         for (i, x) in stage.states.iter_mut().enumerate() {
             *x = self.states[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
         }
-        stage
+        let same = same && stage.rates(model).1 == branches;
+        (stage, same)
     }
 }

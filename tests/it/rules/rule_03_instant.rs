@@ -250,3 +250,17 @@ fn rule_03_a_guard_that_jumps_fires_where_it_becomes_true_and_nowhere_else() {
     all_near(&run.times("A.step"), &[1.5], 1e-12);
     assert_eq!(run.times("A.never"), [0.0; 0]);
 }
+
+#[test]
+fn rule_03_a_condition_that_is_never_true_as_a_whole_does_not_fire() {
+    // each comparison is true at the zero of x or just after it, but not both at any time
+    assert_eq!(counting("-1", "1", "x <= 0 and x > 0", "", 3.0), [0.0; 0]);
+    assert_eq!(counting("-1", "1", "2*x <= 0 and 3*x > 0", "", 3.0), [0.0; 0]);
+    assert_eq!(counting("-1", "1", "mod(x + 1, 2) >= 1 and x > 1", "", 1.5), [0.0; 0]);
+    // at a single point, and not at all there
+    all_near(&counting("-1", "1", "x <= 0 and x >= 0", "", 3.0), &[1.0], 1e-11);
+    all_near(&counting("-1", "1", "2*x <= 0 and 3*x >= 0", "", 3.0), &[1.0], 1e-11);
+    assert_eq!(counting("-1", "1", "x < 0 and x > 0", "", 3.0), [0.0; 0]);
+    // the other way round it is true all along
+    assert_eq!(counting("-1", "1", "x <= 0 or x > 0", "", 3.0), [0.0]);
+}

@@ -293,3 +293,17 @@ fn rule_04_independent_agents_have_instants_of_their_own() {
     }
     all_near(&run.times("A.one"), &[1.0; 2], 1e-12);
 }
+
+#[test]
+fn rule_04_exit_actions_before_those_of_an_interaction() {
+    // the interaction has the last word on what the exit of the mode that it ends writes too
+    let run = simulate(
+        "agent A { discrete n = 0, m = 0
+           initial mode Calm { exit { n := n + 1  m := 7 } }
+           mode Hit { entry { m := m + 1 } } }
+         interaction Meet(a: A, b: A) { pair: when time >= 1 { a.n := a.n + 10  b.n := b.n + 10  a -> Hit  b -> Hit } }
+         system { a = A()  b = A() }  run { until 2 }",
+    );
+    assert_eq!([run.value("a.n"), run.value("b.n")], [10.0, 10.0]);
+    assert_eq!([run.value("a.m"), run.value("b.m")], [8.0, 8.0]);
+}
