@@ -1,5 +1,7 @@
 //! From a condition over nodes to a guard: atoms numbered, each with its rates, all as functions.
 
+use rustc_hash::FxHashSet;
+
 use crate::calculus::condition::{self, Cond, Sense, Written};
 use crate::calculus::derive;
 use crate::calculus::draft::Draft;
@@ -97,10 +99,13 @@ pub fn atom(
     let reach = if draft.is_exhausted() { vec![g] } else { draft.graph.reach(&[g]) };
     let (slots, folds) = slots_read(&draft.graph, frame, &reach);
     let smooth = is_smooth(&draft.graph, frame, &reach);
+    let affine = smooth && folds.is_empty() && is_affine(&draft.graph, first);
+    let turns = turns(&mut draft.graph, &reach);
+    let turns = (!turns.is_empty()).then(|| draft.function(|| format!("{name} turns"), turns));
     let names = Names { types: &draft.types, frame };
     let text = print::short_comparison(&draft.graph, names, relation, g);
     let Written { span, sides } = written;
-    Atom { relation, value, rates, smooth, slots, folds, text, sides, span }
+    Atom { relation, value, rates, smooth, turns, affine, slots, folds, text, sides, span }
 }
 
 /// The slots of agents that nodes read, by themselves or through aggregates, and those of the aggregates; rising.
@@ -133,6 +138,41 @@ pub fn is_smooth(graph: &Graph, frame: &Frame, nodes: &[NodeId]) -> bool {
         };
         smooth_term && !jumps(graph, id)
     })
+}
+
+/// Whether dg/dt is a sum of the rates of more than one state, with weights that move at the turns of g only.
+fn is_affine(graph: &Graph, rate: NodeId) -> bool {
+    let (mut pending, mut seen, mut rates) = (vec![rate], FxHashSet::default(), 0);
+    while let Some(id) = pending.pop() {
+        if !graph.moves(id) || !seen.insert(id) {
+            continue;
+        }
+        match graph.node(id) {
+            Node::Rate { .. } => rates += 1,
+            Node::State { .. } | Node::Acceleration { .. } | Node::Time => return false,
+            Node::Unary(Op::Sign, _) | Node::Constant(_) | Node::Aux { .. } => {}
+            Node::Unary(_, a) => pending.push(a),
+            Node::Binary(_, a, b) | Node::Select(_, a, b) => pending.extend([a, b]),
+        }
+    }
+    rates > 1
+}
+
+/// What is zero where the rate of one of these nodes can jump.
+fn turns(graph: &mut Graph, reach: &[NodeId]) -> Vec<NodeId> {
+    let mut turns = Vec::new();
+    for &id in reach.iter().filter(|&&id| graph.moves(id)).collect::<Vec<_>>() {
+        match graph.node(id) {
+            Node::Unary(Op::Abs, e) => turns.push(e),
+            Node::Binary(Op::Min | Op::Max, a, b) => turns.push(graph.binary(Op::Sub, a, b)),
+            Node::Unary(..) | Node::Binary(..) | Node::Select(..) | Node::Constant(_) | Node::Time => {}
+            Node::State { .. } | Node::Rate { .. } | Node::Acceleration { .. } | Node::Aux { .. } => {}
+        }
+    }
+    turns.retain(|&turn| graph.moves(turn));
+    turns.sort_unstable();
+    turns.dedup();
+    turns
 }
 
 /// Whether the value of a node can jump while its operands move continuously.

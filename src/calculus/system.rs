@@ -399,6 +399,12 @@ pub struct Atom {
     /// Whether g is continuous between events. If not (it has a floor, a sign, an `if`, an atan2, ... of something that
     /// moves), the rates hold only between its jumps: an interval of dg/dt then bounds nothing, an interval of g does.
     pub smooth: bool,
+    /// What is zero where dg/dt can jump (the argument of `abs`, the difference of those of `min` and `max`): where an
+    /// interval of it contains zero, an interval of d2g/dt2 bounds nothing.
+    pub turns: Option<FunctionId>,
+    /// Whether g is, between its turns, a weighted sum of more than one state, with weights that do not move: along
+    /// polynomials it is one.
+    pub affine: bool,
     /// The slots of agents that g reads (states or aux), by itself or through an aggregate, rising.
     pub slots: Vec<usize>,
     /// The slots of the aggregates that g reads, rising.

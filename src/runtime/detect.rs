@@ -1,12 +1,15 @@
 //! A comparison along the trajectories of the agents it reads: the curve on which roots are searched.
 
+use smallvec::{SmallVec, smallvec};
+
 use crate::codegen::kernel::{AgentBox, AgentView};
-use crate::codegen::program::Atom;
+use crate::codegen::program::{Atom, FunctionId};
 use crate::math::Interval;
 use crate::runtime::fold::{self, Folded};
 use crate::runtime::population::{ABSENT, Agents, Slots};
 use crate::runtime::present::{Boxes, Depth, Views};
 use crate::runtime::solve::roots::Curve;
+use crate::runtime::solve::segment::Segment;
 
 /// Scratch rows for evaluating along segments; three rows (x, x', x'') for each slot.
 #[derive(Clone, Debug, Default)]
@@ -121,39 +124,6 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
         kernel.range(&fold::boxes(self.slots, &leaves, &row), time, registers, &mut out);
         out
     }
-
-    /// Bounds of the jet of an atom without aggregates.
-    fn plain_range(&mut self, time: Interval, out: &mut [Interval; 3]) {
-        let width = self.width;
-        if width > 0 {
-            let mut chunks = self.rows.boxes.chunks_exact_mut(3 * width);
-            for (slot, chunk) in (0..self.slots.len()).zip(&mut chunks) {
-                let agent = self.slots[slot];
-                if agent != ABSENT && self.atom.slots.contains(&slot) {
-                    let (x, rest) = chunk.split_at_mut(width);
-                    let (dx, ddx) = rest.split_at_mut(width);
-                    self.agents.agents[agent].segment.jet_range(time.lo, time.hi, x, dx, ddx);
-                }
-            }
-        }
-        let boxes: Boxes<'_> = (0..self.slots.len())
-            .map(|slot| {
-                let agent = self.slots[slot];
-                if agent == ABSENT {
-                    let row = self.rows.absent_box.as_slice();
-                    return AgentBox { states: row, rates: row, accelerations: row, aux: &self.rows.absent };
-                }
-                let rows = &self.rows.boxes[3 * width * slot..3 * width * (slot + 1)];
-                AgentBox {
-                    states: &rows[..width],
-                    rates: &rows[width..2 * width],
-                    accelerations: &rows[2 * width..],
-                    aux: &self.agents.agents[agent].aux,
-                }
-            })
-            .collect();
-        self.agents.program.kernel(self.atom.rates).range(&boxes, time, &mut self.rows.registers, out);
-    }
 }
 
 fn n_states(agents: &Agents<'_>, agent: usize) -> usize {
@@ -205,19 +175,118 @@ impl Curve for AtomCurve<'_, '_> {
     }
 
     fn jet_range(&mut self, s: f64, e: f64) -> [Interval; 3] {
-        self.rows.ranges += 1;
-        self.rows.operations += 2 * self.agents.program.kernel(self.atom.rates).operations();
-        let mut out = [Interval::WHOLE; 3];
         let time = Interval { lo: s, hi: e };
         if !self.folds.is_empty() {
-            out = self.folded_range(time);
-        } else {
-            self.plain_range(time, &mut out);
+            return self.folded_jet_range(time);
         }
-        if !self.atom.smooth && s < e {
+        self.fill_boxes(s, e);
+        if self.atom.affine && s < e && !self.may_turn(time) {
+            return self.affine_range(s, e);
+        }
+        let mut out = [Interval::WHOLE; 3];
+        self.evaluate(self.atom.rates, time, &mut out);
+        if s < e && !self.atom.smooth {
             // The rates hold between the jumps of g only, and bound nothing across one.
             (out[1], out[2]) = (Interval::WHOLE, Interval::WHOLE);
+        } else if s < e && self.may_turn(time) {
+            out[2] = Interval::WHOLE;
         }
         out
+    }
+}
+
+impl AtomCurve<'_, '_> {
+    /// States, rates and accelerations of all slots over [s, e].
+    fn fill_boxes(&mut self, s: f64, e: f64) {
+        self.fill(&mut |segment, x, dx, ddx| segment.jet_range(s, e, x, dx, ddx));
+    }
+
+    fn fill(&mut self, rows_of: &mut dyn FnMut(&Segment, &mut [Interval], &mut [Interval], &mut [Interval])) {
+        let width = self.width;
+        if width == 0 {
+            return;
+        }
+        let mut chunks = self.rows.boxes.chunks_exact_mut(3 * width);
+        for (slot, chunk) in (0..self.slots.len()).zip(&mut chunks) {
+            let agent = self.slots[slot];
+            if agent != ABSENT && self.atom.slots.contains(&slot) {
+                let (x, rest) = chunk.split_at_mut(width);
+                let (dx, ddx) = rest.split_at_mut(width);
+                rows_of(&self.agents.agents[agent].segment, x, dx, ddx);
+            }
+        }
+    }
+
+    /// A function over the boxes.
+    fn evaluate(&mut self, function: FunctionId, time: Interval, out: &mut [Interval]) {
+        self.rows.ranges += 1;
+        self.rows.operations += 2 * self.agents.program.kernel(function).operations();
+        let width = self.width;
+        let boxes: Boxes<'_> = (0..self.slots.len())
+            .map(|slot| {
+                let agent = self.slots[slot];
+                if agent == ABSENT {
+                    let row = self.rows.absent_box.as_slice();
+                    return AgentBox { states: row, rates: row, accelerations: row, aux: &self.rows.absent };
+                }
+                let rows = &self.rows.boxes[3 * width * slot..3 * width * (slot + 1)];
+                AgentBox {
+                    states: &rows[..width],
+                    rates: &rows[width..2 * width],
+                    accelerations: &rows[2 * width..],
+                    aux: &self.agents.agents[agent].aux,
+                }
+            })
+            .collect();
+        self.agents.program.kernel(function).range(&boxes, time, &mut self.rows.registers, out);
+    }
+
+    /// The same for an atom with aggregates.
+    fn folded_jet_range(&mut self, time: Interval) -> [Interval; 3] {
+        self.rows.ranges += 1;
+        self.rows.operations += 2 * self.agents.program.kernel(self.atom.rates).operations();
+        let mut out = self.folded_range(time);
+        if time.lo < time.hi && !self.atom.smooth {
+            (out[1], out[2]) = (Interval::WHOLE, Interval::WHOLE);
+        } else if time.lo < time.hi && self.atom.turns.is_some() {
+            out[2] = Interval::WHOLE;
+        }
+        out
+    }
+
+    /// Whether the rate of g may jump on the boxes.
+    fn may_turn(&mut self, time: Interval) -> bool {
+        let Some(turns) = self.atom.turns else { return false };
+        let mut out: SmallVec<[Interval; 4]> =
+            smallvec![Interval::WHOLE; self.agents.program.kernel(turns).n_outputs()];
+        self.evaluate(turns, time, &mut out);
+        out.iter().any(|turn| turn.lo <= 0.0 && turn.hi >= 0.0)
+    }
+
+    /// Bounds for an affine g, which is a polynomial on the segments: from its terms about the middle of [s, e].
+    fn affine_range(&mut self, s: f64, e: f64) -> [Interval; 3] {
+        let (middle, r) = (0.5 * (s + e), 0.5 * (e - s));
+        let mut jet = self.jet_range(middle, middle);
+        let degree = |agent: &usize| match *agent {
+            ABSENT => 0,
+            agent => self.agents.agents[agent].segment.degree(),
+        };
+        let degree = self.slots.iter().map(degree).max().unwrap_or(0);
+        let size = |bound: Interval| bound.lo.abs().max(bound.hi.abs());
+        let mut spread = [size(jet[1]) * r + 0.5 * size(jet[2]) * r * r, size(jet[2]) * r, 0.0];
+        for power in 3..=degree {
+            self.fill(&mut |segment, _, _, ddx| segment.term_range(s, e, power, ddx));
+            let mut out = [Interval::WHOLE; 3];
+            self.evaluate(self.atom.rates, Interval { lo: middle, hi: middle }, &mut out);
+            let (term, k) = (size(out[2]), power as f64);
+            spread[0] += term;
+            spread[1] += k * term / r;
+            spread[2] += k * (k - 1.0) * term / (r * r);
+        }
+        for (bound, spread) in jet.iter_mut().zip(spread) {
+            let room = spread * (1.0 + 1e-12);
+            *bound = Interval { lo: bound.lo - room, hi: bound.hi + room };
+        }
+        jet
     }
 }

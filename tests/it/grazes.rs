@@ -370,3 +370,51 @@ fn pairings_arrive_and_stay() {
         all_near(&run(guard), &[1.0], 1e-11);
     }
 }
+
+#[test]
+fn kinks_of_a_guard_in_one_step() {
+    // the first of four roots, three turns of the guard apart
+    all_near(&clock("abs(abs(x - 1) - 0.5) <= 0.1", 3.0), &[0.4, 1.4], 1e-11);
+    all_near(&clock("abs(abs(abs(x - 4) - 2) - 1) < 0.25", 8.0), &[0.75, 2.75, 4.75, 6.75], 1e-11);
+    all_near(&clock("max(min(x, 4 - x), min(x - 3, 9 - x)) <= 1", 7.0), &[0.0, 3.0], 1e-11);
+}
+
+#[test]
+fn zero_all_along_is_on_the_boundary_all_along() {
+    // within rounding of zero at all times: the weak ones are true from the start, the strict ones never
+    let still = ["sin(x)^2 + cos(x)^2 - 1", "(x + 1)^2 - x^2 - 2*x - 1", "exp(x)*exp(-x) - 1", "x - 3*(x/3)"];
+    for g in still {
+        pairing(g, &|guard| clock(guard, 6.0), &[0.0], &[], 0.0);
+    }
+}
+
+#[test]
+fn equal_agents_are_not_apart() {
+    // the same flow from the same state, one after a reset: equal within rounding
+    let text = |guard: &str| {
+        format!(
+            "agent A {{ state x = 0, y = 1  flow {{ x' = 2*y  y' = -2*x }}  swing: when x >= 0.9 {{ }} }}
+             interaction Each(a: A, b: A) {{ pair: when {guard} {{ }} }}
+             system {{ p = A()  q = A()  r = A() }}  run {{ until 20  tolerance 1e-9 }}"
+        )
+    };
+    for guard in ["a.x > b.x", "a.x < b.x", "(a.x - b.x)^2 + (a.y - b.y)^2 > 0", "a.x + a.y > b.y + b.x"] {
+        assert_eq!(simulate(&text(guard)).times("Each.pair"), [0.0; 0], "{guard}");
+    }
+    for guard in ["a.x >= b.x", "a.x <= b.x", "(a.x - b.x)^2 + (a.y - b.y)^2 <= 0"] {
+        let times = simulate(&text(guard)).times("Each.pair");
+        assert!(times.iter().all(|time| *time == 0.0) && !times.is_empty(), "{guard}: {times:?}");
+    }
+}
+
+#[test]
+fn a_pair_that_stays_on_its_boundary() {
+    // both are at the distance of the guard all along, after the first has fired at the start
+    let run = simulate(
+        "agent A { state x, y  flow { x' = 0.2*time  y' = 0.3 - 0.1*time^2 } }
+         interaction Swap(a: A, b: A) { pair: when (a.x - b.x)^2 + (a.y - b.y)^2 <= 1 { a.x := b.x  b.x := a.x } }
+         interaction Far(a: A, b: A) { pair: when abs(a.x - b.x) < 0.6 { a.x := b.x  b.x := a.x } }
+         system { p = A(x = 0, y = 0)  q = A(x = 0.6, y = 0.8) }  run { until 3 }",
+    );
+    assert_eq!(run.log(), ["0 Swap.pair p q"]);
+}

@@ -9,6 +9,7 @@ pub mod method;
 pub mod tsit5;
 pub mod adams;
 pub mod integrate;
+mod bracket;
 pub mod roots;
 pub mod polynomial;
 pub mod step_select;

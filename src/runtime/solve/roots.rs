@@ -10,6 +10,7 @@
 //! root), into f < 0 it changes at once. If neither decides, `<=` is true and `<` false.
 
 use crate::math::Interval;
+use crate::runtime::solve::bracket::bracket;
 use crate::runtime::solve::{time_resolution, ulp};
 
 /// g along a trajectory.
@@ -49,6 +50,18 @@ pub struct Flip {
     pub near: f64,
     /// Not isolated: the comparison came within rounding of zero, or the limit of pieces was reached.
     pub undecided: bool,
+}
+
+impl Flip {
+    /// Within rounding of zero.
+    fn touch(time: f64) -> Self {
+        Self { time, near: time, undecided: true }
+    }
+
+    /// Below zero from here on.
+    fn at(time: f64) -> Self {
+        Self { time, near: time, undecided: false }
+    }
 }
 
 /// The result of a search.
@@ -114,6 +127,31 @@ impl<'a> Turned<'a> {
         self.jet(t)[0]
     }
 
+    /// How a piece is entered that begins in the middle of one entered so.
+    fn entry_at(&mut self, t: f64, before: Entry, known: &Known) -> Entry {
+        let value = self.value(t);
+        if value > 0.0 && before == Entry::Clear {
+            return Entry::Clear;
+        }
+        // Near a boundary a number that rounding may have made is not clear of it, nor beyond it.
+        let rounding = self.rounding(t)[0];
+        let stays = before == Entry::Boundary && !known.touching();
+        if stays && value.abs() <= LEAVES * rounding {
+            Entry::Boundary
+        } else if value > rounding {
+            Entry::Clear
+        } else {
+            Entry::Unsettled
+        }
+    }
+
+    /// Whether f is near the boundary at all of many points of [s, e], which lie at no regular distance.
+    fn stays_within_rounding(&mut self, s: f64, e: f64) -> bool {
+        let share = |k: u32| (f64::from(k) * 0.618_033_988_749_894_9).fract();
+        let points = [s, e, 0.5 * (s + e)].into_iter().chain((1..SAMPLES).map(|k| s + (e - s) * share(k)));
+        self.curve.smooth() && points.into_iter().all(|t| self.value(t).abs() <= LEAVES * self.rounding(t)[0])
+    }
+
     fn undefined_all_over(&mut self, s: f64, e: f64) -> bool {
         (0..5).all(|k| self.curve.jet(s + (e - s) * 0.25 * f64::from(k))[0].is_nan())
     }
@@ -132,7 +170,8 @@ impl<'a> Turned<'a> {
             .range(t, t)
             .map(|bound| bound.hi - bound.lo)
             .map(|width| if width.is_finite() { width } else { 0.0 });
-        [if width[0] <= self.rounding_max { width[0] } else { 0.0 }, width[1], width[2]]
+        let own = if width[0] <= self.rounding_max { width[0] } else { 0.0 };
+        [own.max(f64::MIN_POSITIVE), width[1], width[2]]
     }
 }
 
@@ -141,11 +180,17 @@ impl<'a> Turned<'a> {
 enum Entry {
     /// f > 0 at its start.
     Clear,
-    /// f is zero at its start and positive, or zero, just after.
+    /// f is zero within rounding at its start, and the present truth holds on until f is really below zero.
     Boundary,
     /// f is not positive at its start, and did not change before.
     Unsettled,
 }
+
+/// What is on the boundary has left it when it is so many roundings away from it; what is not is there within one.
+const LEAVES: f64 = 4.0;
+
+/// At so many points f is looked at to tell that it stays zero.
+const SAMPLES: u32 = 16;
 
 /// After so many pieces a search asks whether f is zero all along, or not defined.
 const PIECES_PATIENT: u32 = 24;
@@ -170,20 +215,20 @@ pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_ma
             known_here.slack = 0.0;
             known_here.settled = false;
             known_here.grazed = false;
+            if looked_at == 0 && entry == Entry::Boundary && f.stays_within_rounding(s, e) {
+                return if known.touching() { Search::Flip(Flip::touch(s)) } else { Search::None };
+            }
         }
         looked_at += 1;
-        let middle = 0.5 * (s + e);
         match look(&mut f, s, e, entry, &known) {
             Look::Clear => {}
             Look::Flip(flip) => return Search::Flip(flip),
             Look::Divide if looked_at >= PIECES_PATIENT && e - s < small && f.undefined_all_over(s, e) => {}
             Look::Divide if looked_at >= pieces_max && s - start > 1e-3 * length => return Search::Until(s),
             Look::Divide if looked_at >= pieces_max => return Search::Undecided,
-            Look::Divide if looked_at < pieces_max && divisible(s, e) => {
-                let at_middle = f.value(middle);
-                // Near a boundary a number that rounding may have made is not clear of it.
-                let clear = at_middle > 0.0 && (entry == Entry::Clear || at_middle > f.rounding(middle)[0]);
-                pieces.push((middle, e, if clear { Entry::Clear } else { Entry::Unsettled }));
+            Look::Divide if divisible(s, e) => {
+                let middle = 0.5 * (s + e);
+                pieces.push((middle, e, f.entry_at(middle, entry, &known)));
                 pieces.push((s, middle, entry));
             }
             Look::Divide => {
@@ -192,13 +237,8 @@ pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_ma
                 }
             }
         }
-        if looked_at >= PIECES_PATIENT
-            && looked_at.is_power_of_two()
-            && let Some((s, e, _)) = pieces.last().copied()
-            && let Some(found) = along(&mut f, s, e, &known)
-        {
-            pieces.pop();
-            if let Search::Flip(flip) = found {
+        if looked_at == PIECES_PATIENT || looked_at > PIECES_PATIENT && looked_at.is_power_of_two() {
+            if let Some(flip) = along(&mut f, &mut pieces, &known) {
                 return Search::Flip(flip);
             }
         }
@@ -223,18 +263,13 @@ impl Known {
     }
 }
 
-/// Settles a piece over which |f| stays within rounding of zero: it is on the boundary all along.
-fn along(f: &mut Turned<'_>, s: f64, e: f64, known: &Known) -> Option<Search> {
-    let bound = f.range(s, e)[0];
-    let rounding = f.rounding(0.5 * (s + e))[0];
-    if bound.lo > 0.0 || bound.hi < 0.0 || bound.hi - bound.lo > 4.0 * rounding {
-        return None;
-    }
-    Some(if known.touching() {
-        Search::Flip(Flip { time: s, near: s, undecided: true })
-    } else {
-        Search::None
-    })
+/// Takes off the pieces over which |f| stays within rounding of zero: it is on the boundary all along. A change if that
+/// is one.
+fn along(f: &mut Turned<'_>, pieces: &mut Vec<(f64, f64, Entry)>, known: &Known) -> Option<Flip> {
+    let s = pieces.last()?.0;
+    let longest = (0..pieces.len()).find(|&k| f.stays_within_rounding(s, pieces[k].1))?;
+    pieces.truncate(longest);
+    known.touching().then_some(Flip::touch(s))
 }
 
 fn decide(jet: &[f64; 3], rounding: &[f64; 3]) -> Direction {
@@ -251,17 +286,22 @@ fn enter(f: &mut Turned<'_>, s: f64, known: Known) -> Result<Entry, Flip> {
     let jet = f.jet(s);
     let by_rate = known.slack.max(jet[1].abs() * time_resolution(s)).min(1e-3 * (1.0 + jet[0].abs()));
     let band = by_rate.min(f.rounding_max);
-    if jet[0] > band || jet[0] == f64::INFINITY {
+    if jet[0] > f.rounding_max || jet[0] == f64::INFINITY {
         return Ok(Entry::Clear);
     }
     let rounding = f.rounding(s);
+    // Where f moves so slowly that it may only seem to, the truth changes when it is really below zero.
+    let slow = jet[1].abs() * 1e-6 <= rounding[0] && !known.touching();
+    if slow && jet[0].abs() <= LEAVES * rounding[0] {
+        return Ok(Entry::Boundary);
+    }
     if jet[0] > band.max(rounding[0]) {
         return Ok(Entry::Clear);
     }
     if known.settled && jet[0] >= -band.max(rounding[0]) {
         return Ok(Entry::Boundary);
     }
-    let flip = Flip { time: s, near: s, undecided: false };
+    let flip = Flip::at(s);
     if jet[0] < -band.max(rounding[0]) {
         return Err(flip);
     }
@@ -303,15 +343,24 @@ fn look(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, known: &Known) -> Look
     if f1.lo >= 0.0 {
         return Look::Clear;
     }
-    if entry == Entry::Clear && clears_by_mean_value(f, s, e, &f0, &f1) {
+    if entry == Entry::Clear
+        && (clears_by_mean_value(f, s, e, &f0, &f1) || clears_by_second_rate(f, s, e, &f2))
+    {
         return Look::Clear;
     }
     let at_end = f.jet(e);
+    let stays =
+        |f: &mut Turned<'_>| entry == Entry::Boundary && !known.touching() && at_end[0] >= -f.rounding(e)[0];
     if f1.hi <= 0.0 && entry == Entry::Clear {
         return falling(f, s, e, &at_end, known);
     }
     if f1.hi < 0.0 {
-        return Look::Flip(Flip { time: s, near: s, undecided: false });
+        let flip = Flip::at(s);
+        return if stays(f) { Look::Clear } else { Look::Flip(flip) };
+    }
+    if f2.hi <= 0.0 && stays(f) {
+        // It stays above the chord.
+        return Look::Clear;
     }
     if f2.lo >= 0.0 {
         return convex(f, s, e, entry, &at_end, known);
@@ -329,13 +378,27 @@ fn clears_by_mean_value(f: &mut Turned<'_>, s: f64, e: f64, f0: &Interval, f1: &
     at_middle * (1.0 - 1e-9) > loss && at_middle > 1e-12 * (f0.hi - f0.lo)
 }
 
+/// f(middle) outweighs what f' there and the bound of f'' can take away.
+fn clears_by_second_rate(f: &mut Turned<'_>, s: f64, e: f64, f2: &Interval) -> bool {
+    if !f2.lo.is_finite() {
+        return false;
+    }
+    let (middle, radius) = (0.5 * (s + e), 0.5 * (e - s));
+    let jet = f.jet(middle);
+    let least = jet[0] - jet[1].abs() * radius + 0.5 * f2.lo.min(0.0) * radius * radius;
+    least > 0.0 && {
+        let rounding = f.rounding(middle);
+        least > rounding[0] + rounding[1] * radius
+    }
+}
+
 /// f falls from f(s) > 0.
 fn falling(f: &mut Turned<'_>, s: f64, e: f64, at_end: &[f64; 3], known: &Known) -> Look {
     if at_end[0] <= 0.0 {
         return Look::Flip(isolate(f, s, e));
     }
     if due(f, e, at_end, known) {
-        return Look::Flip(Flip { time: e, near: e, undecided: false });
+        return Look::Flip(Flip::at(e));
     }
     Look::Clear
 }
@@ -355,8 +418,8 @@ fn due(f: &mut Turned<'_>, e: f64, at_end: &[f64; 3], known: &Known) -> bool {
 fn convex(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, at_end: &[f64; 3], known: &Known) -> Look {
     if entry == Entry::Boundary {
         let at_start = f.jet(s)[1];
-        if at_start < 0.0 && at_start < -f.rounding(s)[1] {
-            return Look::Flip(Flip { time: s, near: s, undecided: false });
+        if at_start < 0.0 && at_start < -f.rounding(s)[1] && (known.touching() || sinks(f, s, e, at_end)) {
+            return Look::Flip(Flip::at(s));
         }
         return Look::Clear;
     }
@@ -376,14 +439,20 @@ fn convex(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, at_end: &[f64; 3], k
     if value > rounding || !known.touching() {
         return Look::Clear;
     }
-    Look::Flip(Flip { time: lowest, near: lowest, undecided: true })
+    Look::Flip(Flip::touch(lowest))
+}
+
+/// Whether an f with one minimum is really below zero somewhere.
+fn sinks(f: &mut Turned<'_>, s: f64, e: f64, at_end: &[f64; 3]) -> bool {
+    let lowest = if at_end[1] <= 0.0 { e } else { turning_point(f, s, e).0 };
+    f.value(lowest) < -LEAVES * f.rounding(lowest)[0]
 }
 
 /// f'' <= 0: it stays above the chord.
 fn concave(f: &mut Turned<'_>, s: f64, e: f64, entry: Entry, at_end: &[f64; 3], known: &Known) -> Look {
     if at_end[0] > 0.0 {
         if due(f, e, at_end, known) {
-            return Look::Flip(Flip { time: e, near: e, undecided: false });
+            return Look::Flip(Flip::at(e));
         }
         return Look::Clear;
     }
@@ -441,51 +510,4 @@ fn turning_point(f: &mut Turned<'_>, s: f64, e: f64) -> (f64, f64) {
 fn isolate(f: &mut Turned<'_>, s: f64, e: f64) -> Flip {
     let (near, time) = bracket(s, e, &mut |t| f.value(t));
     Flip { time, near, undecided: false }
-}
-
-/// Narrows [lo, hi] with f(lo) > 0 >= f(hi) to neighbouring numbers: regula falsi with halved end values (the Illinois
-/// rule), aimed a little past the root so that both ends close in, and a bisection whenever three steps have not halved
-/// the bracket.
-fn bracket(s: f64, e: f64, f: &mut dyn FnMut(f64) -> f64) -> (f64, f64) {
-    let (mut lo, mut hi) = (s, e);
-    let (mut f_lo, mut f_hi) = (f(s), f(e));
-    if f_lo.is_nan() || f_lo <= 0.0 {
-        return (lo, lo);
-    }
-    let mut last_side = 0;
-    let mut width = hi - lo;
-    for round in 0_u32.. {
-        let middle = 0.5 * (lo + hi);
-        if middle <= lo || middle >= hi {
-            break;
-        }
-        let aim = lo + (hi - lo) * (f_lo / (f_lo - f_hi));
-        let past = 2.0 * ulp(aim) * f64::from(last_side);
-        let mut t = if aim.is_finite() && f_hi < 0.0 { aim + past } else { middle };
-        if round % 3 == 2 {
-            if hi - lo > 0.5 * width {
-                t = middle;
-            }
-            width = hi - lo;
-        }
-        t = t.clamp(lo.next_up(), hi.next_down());
-        let value = f(t);
-        if value == 0.0 {
-            // The first of the zeros, should there be more of them.
-            let before = t.next_down();
-            if before <= lo || f(before) > 0.0 {
-                return (before.max(lo), t);
-            }
-        }
-        let side = if value > 0.0 { 1 } else { -1 };
-        if side > 0 {
-            (lo, f_lo) = (t, value);
-            f_hi *= if last_side == side { 0.5 } else { 1.0 };
-        } else {
-            (hi, f_hi) = (t, value);
-            f_lo *= if last_side == side { 0.5 } else { 1.0 };
-        }
-        last_side = side;
-    }
-    (lo, hi)
 }

@@ -88,6 +88,30 @@ impl Segment {
     }
 }
 
+impl Segment {
+    /// How high a power the polynomials have.
+    pub fn degree(&self) -> usize {
+        self.n_coefficients.saturating_sub(1)
+    }
+
+    /// Bounds of what the `power`-th terms of the polynomials moved to the middle of [s, e] are at e.
+    pub fn term_range(&self, s: f64, e: f64, power: usize, terms: &mut [Interval]) {
+        let n = self.n_coefficients;
+        let (from, to) = ((s - self.start) / self.h, (e - self.start) / self.h);
+        let (middle, radius) = (0.5 * (from + to), 0.5 * (to - from));
+        let mut moved = [0.0; N_MAX];
+        for (term, c) in terms.iter_mut().zip(self.coefficients.chunks_exact(n)) {
+            let moved = &mut moved[..n];
+            moved.copy_from_slice(c);
+            shift(moved, middle);
+            let reach = middle.abs() + radius.abs();
+            let size = c.iter().skip(1).rev().fold(0.0, |sum, c| (sum + c.abs()) * reach);
+            let value = moved.get(power).copied().unwrap_or(0.0) * radius.powi(power as i32);
+            *term = around(value, 0.0, size * (8 * n) as f64 * f64::EPSILON);
+        }
+    }
+}
+
 /// Moves a polynomial's origin to `by` (repeated synthetic division).
 fn shift(c: &mut [f64], by: f64) {
     let n = c.len();

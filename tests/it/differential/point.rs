@@ -11,6 +11,8 @@ use super::world::World;
 
 /// A margin as small as this may be zero.
 const NEAR: f64 = 1e-7;
+/// A margin that comes near zero within a part of a step is not larger than this there.
+const MAYBE_NEAR: f64 = 1e-2;
 /// How far before and after a point its sides are looked at, s; more than what is near takes at usual rates.
 const APART: f64 = 1e-6;
 /// Into how many parts a step is divided in search of points.
@@ -77,9 +79,9 @@ fn points(from: f64, to: f64, margin: &dyn Fn(f64) -> f64) -> Vec<f64> {
     for k in 0..times.len() {
         let (before, after) = (k.saturating_sub(1), (k + 1).min(times.len() - 1));
         let lowest = margins[k].abs() <= margins[before].abs().min(margins[after].abs());
-        let turns = nearest(times[before], times[after], margin);
-        if lowest && margin(turns).abs() <= NEAR {
-            found.push(turns);
+        if lowest && margins[k].abs() <= MAYBE_NEAR {
+            let turns = nearest(times[before], times[after], margin);
+            found.extend(Some(turns).filter(|turns| margin(*turns).abs() <= NEAR));
         }
     }
     found
