@@ -195,13 +195,16 @@ impl Curve for AtomCurve<'_, '_> {
     }
 }
 
+/// Fills in rows of states, rates and accelerations of one agent from its segment.
+type RowsOf<'a> = dyn FnMut(&Segment, &mut [Interval], &mut [Interval], &mut [Interval]) + 'a;
+
 impl AtomCurve<'_, '_> {
     /// States, rates and accelerations of all slots over [s, e].
     fn fill_boxes(&mut self, s: f64, e: f64) {
         self.fill(&mut |segment, x, dx, ddx| segment.jet_range(s, e, x, dx, ddx));
     }
 
-    fn fill(&mut self, rows_of: &mut dyn FnMut(&Segment, &mut [Interval], &mut [Interval], &mut [Interval])) {
+    fn fill(&mut self, rows_of: &mut RowsOf<'_>) {
         let width = self.width;
         if width == 0 {
             return;

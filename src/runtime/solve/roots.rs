@@ -237,10 +237,10 @@ pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_ma
                 }
             }
         }
-        if looked_at == PIECES_PATIENT || looked_at > PIECES_PATIENT && looked_at.is_power_of_two() {
-            if let Some(flip) = along(&mut f, &mut pieces, &known) {
-                return Search::Flip(flip);
-            }
+        if (looked_at == PIECES_PATIENT || looked_at > PIECES_PATIENT && looked_at.is_power_of_two())
+            && let Some(flip) = along(&mut f, &mut pieces, &known)
+        {
+            return Search::Flip(flip);
         }
     }
     Search::None
