@@ -8,6 +8,7 @@
 //! operator.
 
 pub mod graph;
+mod relation;
 pub mod system;
 mod simplify;
 pub mod evaluate;

@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use crate::base::{Arena, Idx, Span};
 use crate::calculus::graph::{Graph, NodeId};
+pub use crate::calculus::relation::Relation;
 use crate::math::Scale;
 pub use crate::model::ir::{Aggregate, Block, Instance, Integrator, Population, Record, Run, VarRef};
 
@@ -426,17 +427,6 @@ pub struct Sides {
     pub sign: &'static str,
     /// What stands on the right.
     pub right: NodeId,
-}
-
-/// How an atom compares g with zero.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Relation {
-    /// g <= 0: true on the boundary.
-    NonPositive,
-    /// g < 0: false on the boundary.
-    Negative,
-    /// `crossing(g)`: true at the instants at which g changes its sign.
-    Crossing,
 }
 
 /// A condition with its atoms.
