@@ -1,7 +1,7 @@
 //! Is what a model asks for bounded before it takes memory or time, and does each bound say how it is raised? Nothing here looks at a clock:
 //! what would not end in time ends the test by its memory, or never.
 
-#[path = "../../examples/giant/shapes.rs"]
+#[path = "../../benches/giant/shapes.rs"]
 #[allow(dead_code, reason = "shared with the example that writes files")]
 mod shapes;
 
