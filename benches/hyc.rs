@@ -19,7 +19,7 @@ use hyc::codegen::kernel::AgentView;
 use hyc::codegen::program::Program;
 use hyc::codegen::{self, Backend};
 use hyc::model::{self, Files, Settings};
-use hyc::runtime::observe::{Event, Last, Observer, Outcome, Progress, Row};
+use hyc::runtime::observe::{Event, Last, Observer, Outcome, Row};
 use hyc::runtime::{self, Limits};
 use hyc::syntax;
 
@@ -52,10 +52,6 @@ impl Observer for Silence {
 
     fn last(&mut self, last: &Last<'_>) -> io::Result<()> {
         black_box(last);
-        Ok(())
-    }
-
-    fn progress(&mut self, _progress: &Progress) -> io::Result<()> {
         Ok(())
     }
 }

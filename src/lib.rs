@@ -10,7 +10,7 @@
 //! use hyc::codegen::Backend;
 //! use hyc::model::{Files, Settings};
 //! use hyc::runtime::Limits;
-//! use hyc::runtime::observe::{Event, Last, Observer, Progress, Row};
+//! use hyc::runtime::observe::{Event, Observer};
 //!
 //! // What a model may read, and who is told what happens: the command line has files and terminals for these.
 //! struct NoFiles;
@@ -24,15 +24,6 @@
 //! impl Observer for Times {
 //!     fn event(&mut self, event: &Event<'_>) -> io::Result<()> {
 //!         self.0.push(event.time);
-//!         Ok(())
-//!     }
-//!     fn sample(&mut self, _record: usize, _row: &Row<'_>) -> io::Result<()> {
-//!         Ok(())
-//!     }
-//!     fn last(&mut self, _last: &Last<'_>) -> io::Result<()> {
-//!         Ok(())
-//!     }
-//!     fn progress(&mut self, _progress: &Progress) -> io::Result<()> {
 //!         Ok(())
 //!     }
 //! }

@@ -10,11 +10,17 @@ pub trait Observer {
     /// A transition has fired.
     fn event(&mut self, event: &Event<'_>) -> io::Result<()>;
     /// A row of record number `record` of the run's settings.
-    fn sample(&mut self, record: usize, row: &Row<'_>) -> io::Result<()>;
+    fn sample(&mut self, _record: usize, _row: &Row<'_>) -> io::Result<()> {
+        Ok(())
+    }
     /// The state of an agent at the end; agents come in order of their numbers.
-    fn last(&mut self, last: &Last<'_>) -> io::Result<()>;
+    fn last(&mut self, _last: &Last<'_>) -> io::Result<()> {
+        Ok(())
+    }
     /// Now and then: how far the run has come.
-    fn progress(&mut self, progress: &Progress) -> io::Result<()>;
+    fn progress(&mut self, _progress: &Progress) -> io::Result<()> {
+        Ok(())
+    }
     /// Whether it wants to be told why transitions fire. Asked once, before the run.
     fn wants_reasons(&self) -> bool {
         false

@@ -13,8 +13,8 @@ use hyc::model::{Files, Settings};
 use hyc::runtime::Algorithm;
 use hyc::runtime::limits::Limits;
 use hyc::runtime::observe::{
-    Cause, Cell, End, Explanation, FalseAssert, Last, Observer, Outcome, Progress, Row, ShownComparison,
-    Stats, Undecided,
+    Cause, Cell, End, Explanation, FalseAssert, Last, Observer, Outcome, Row, ShownComparison, Stats,
+    Undecided,
 };
 
 /// A model with what the command line says about its run.
@@ -430,10 +430,6 @@ impl Observer for Recorder {
             mode: last.mode.into(),
             values: states.chain(discretes).collect(),
         });
-        Ok(())
-    }
-
-    fn progress(&mut self, _progress: &Progress) -> io::Result<()> {
         Ok(())
     }
 

@@ -16,7 +16,7 @@ use hyc::base::SourceMap;
 use hyc::codegen::program::Program;
 use hyc::codegen::{self, Backend};
 use hyc::model::{Files, Settings};
-use hyc::runtime::observe::{Event, Last, Observer, Progress, Row};
+use hyc::runtime::observe::{Event, Observer};
 use hyc::runtime::{self, Limits};
 use problem::{Car, cars, csv, squares};
 
@@ -76,18 +76,6 @@ impl Observer for Log {
             first: a.min(b),
             second: a.max(b),
         });
-        Ok(())
-    }
-
-    fn sample(&mut self, _record: usize, _row: &Row<'_>) -> io::Result<()> {
-        Ok(())
-    }
-
-    fn last(&mut self, _last: &Last<'_>) -> io::Result<()> {
-        Ok(())
-    }
-
-    fn progress(&mut self, _progress: &Progress) -> io::Result<()> {
         Ok(())
     }
 }

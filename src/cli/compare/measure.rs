@@ -8,7 +8,7 @@ use crate::base::Diagnostic;
 use crate::codegen::program::Program;
 use crate::model::ir::Integrator;
 use crate::runtime::limits::Limits;
-use crate::runtime::observe::{End, Event, Last, Observer, Outcome, Progress, Row, Stats};
+use crate::runtime::observe::{End, Event, Observer, Outcome, Row, Stats};
 use crate::runtime::paper::{Algorithm, Paper};
 use crate::runtime::simulate_by;
 
@@ -147,12 +147,6 @@ impl Observer for Measured {
         self.rows.push(Recorded { time: row.time, agent: row.agent, cells });
         Ok(())
     }
-    fn last(&mut self, _: &Last<'_>) -> io::Result<()> {
-        Ok(())
-    }
-    fn progress(&mut self, _: &Progress) -> io::Result<()> {
-        Ok(())
-    }
 }
 
 /// An observer that keeps nothing.
@@ -160,15 +154,6 @@ struct Nobody;
 
 impl Observer for Nobody {
     fn event(&mut self, _: &Event<'_>) -> io::Result<()> {
-        Ok(())
-    }
-    fn sample(&mut self, _: usize, _: &Row<'_>) -> io::Result<()> {
-        Ok(())
-    }
-    fn last(&mut self, _: &Last<'_>) -> io::Result<()> {
-        Ok(())
-    }
-    fn progress(&mut self, _: &Progress) -> io::Result<()> {
         Ok(())
     }
 }

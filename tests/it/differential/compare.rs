@@ -9,7 +9,7 @@ use hyc::codegen::Backend;
 use hyc::model::ir::{Integrator, Model};
 use hyc::model::{Files, Settings};
 use hyc::runtime::limits::Limits;
-use hyc::runtime::observe::{Cell, End, Event, Last, Observer, Progress};
+use hyc::runtime::observe::{Cell, End, Event, Last, Observer};
 
 use super::generate;
 use super::reference::{self, Pace, Row};
@@ -225,10 +225,6 @@ impl Observer for Writer {
         Ok(())
     }
 
-    fn sample(&mut self, _record: usize, _row: &hyc::runtime::observe::Row<'_>) -> io::Result<()> {
-        Ok(())
-    }
-
     fn last(&mut self, last: &Last<'_>) -> io::Result<()> {
         let number = |cell: &Cell| match cell {
             Cell::Number(x) => *x,
@@ -237,10 +233,6 @@ impl Observer for Writer {
         };
         let values = last.states.iter().copied().chain(last.discretes.iter().map(number)).collect();
         self.ends.push((last.mode.into(), values));
-        Ok(())
-    }
-
-    fn progress(&mut self, _progress: &Progress) -> io::Result<()> {
         Ok(())
     }
 }

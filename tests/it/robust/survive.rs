@@ -14,7 +14,7 @@ use hyc::base::{Diagnostic, SourceMap};
 use hyc::codegen::Backend;
 use hyc::model::{Files, Settings};
 use hyc::runtime::limits::Limits;
-use hyc::runtime::observe::{End, Event, Last, Observer, Progress, Row};
+use hyc::runtime::observe::{End, Event, Observer, Row};
 
 /// After this time a run is interrupted, as a person would; nearly all mutants take milliseconds.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -193,13 +193,5 @@ impl Observer for Watcher<'_> {
 
     fn sample(&mut self, _record: usize, _row: &Row<'_>) -> io::Result<()> {
         self.take()
-    }
-
-    fn last(&mut self, _last: &Last<'_>) -> io::Result<()> {
-        Ok(())
-    }
-
-    fn progress(&mut self, _progress: &Progress) -> io::Result<()> {
-        Ok(())
     }
 }
