@@ -25,6 +25,14 @@ pub struct AgentView<'a> {
     pub aux: &'a [f64],
 }
 
+impl<'a> AgentView<'a> {
+    /// An agent that is not there: every row is this one, full of NaN and as long as any row is.
+    #[inline]
+    pub fn absent(row: &'a [f64]) -> Self {
+        Self { states: row, rates: row, accelerations: row, aux: row }
+    }
+}
+
 /// The same over a stretch of time.
 #[derive(Clone, Copy, Debug)]
 pub struct AgentBox<'a> {
@@ -36,6 +44,14 @@ pub struct AgentBox<'a> {
     pub accelerations: &'a [Interval],
     /// Auxiliary columns (they change at events only).
     pub aux: &'a [f64],
+}
+
+impl<'a> AgentBox<'a> {
+    /// An agent that is not there: anything at all, and auxiliary columns that are NaN.
+    #[inline]
+    pub fn absent(row: &'a [Interval], aux: &'a [f64]) -> Self {
+        Self { states: row, rates: row, accelerations: row, aux }
+    }
 }
 
 /// How long the rows of the agent in a slot must be: the highest column read, plus one.

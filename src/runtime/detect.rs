@@ -77,8 +77,7 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
         }
         let row = |agent: usize| {
             let Ok(k) = self.involved.binary_search(&agent) else {
-                let row = self.rows.absent.as_slice();
-                return AgentView { states: row, rates: row, accelerations: row, aux: row };
+                return AgentView::absent(&self.rows.absent);
             };
             let rows = &self.rows.numbers[3 * width * k..3 * width * (k + 1)];
             AgentView {
@@ -106,8 +105,7 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
         }
         let row = |agent: usize| {
             let Ok(k) = self.involved.binary_search(&agent) else {
-                let row = absent_box.as_slice();
-                return AgentBox { states: row, rates: row, accelerations: row, aux: absent };
+                return AgentBox::absent(absent_box, absent);
             };
             let rows = &boxes[3 * width * k..3 * width * (k + 1)];
             AgentBox {
@@ -153,8 +151,7 @@ impl Curve for AtomCurve<'_, '_> {
             .map(|slot| {
                 let agent = self.slots[slot];
                 if agent == ABSENT {
-                    let row = self.rows.absent.as_slice();
-                    return AgentView { states: row, rates: row, accelerations: row, aux: row };
+                    return AgentView::absent(&self.rows.absent);
                 }
                 let rows = &self.rows.numbers[3 * width * slot..3 * width * (slot + 1)];
                 AgentView {
@@ -229,8 +226,7 @@ impl AtomCurve<'_, '_> {
             .map(|slot| {
                 let agent = self.slots[slot];
                 if agent == ABSENT {
-                    let row = self.rows.absent_box.as_slice();
-                    return AgentBox { states: row, rates: row, accelerations: row, aux: &self.rows.absent };
+                    return AgentBox::absent(&self.rows.absent_box, &self.rows.absent);
                 }
                 let rows = &self.rows.boxes[3 * width * slot..3 * width * (slot + 1)];
                 AgentBox {

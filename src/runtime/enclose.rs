@@ -100,8 +100,7 @@ impl Enclosures {
         let Self { registers, boxes, absent, absent_aux, .. } = self;
         let row = |agent: usize| {
             if agent == ABSENT {
-                let row = absent.as_slice();
-                return AgentBox { states: row, rates: row, accelerations: row, aux: absent_aux };
+                return AgentBox::absent(absent, absent_aux);
             }
             let states = match places.binary_search_by_key(&agent, |place| place.0) {
                 Ok(k) => &boxes[places[k].1..places[k].1 + places[k].2],
@@ -232,13 +231,7 @@ impl Enclosures {
                 .iter()
                 .map(|&agent| {
                     if agent == ABSENT {
-                        let row = self.absent.as_slice();
-                        return AgentBox {
-                            states: row,
-                            rates: row,
-                            accelerations: row,
-                            aux: &self.absent_aux,
-                        };
+                        return AgentBox::absent(&self.absent, &self.absent_aux);
                     }
                     let mut first = 0;
                     let mut states: &[Interval] = &[];

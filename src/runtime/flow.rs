@@ -130,7 +130,7 @@ fn views<'a>(agents: &'a Agents<'_>, slots: &Slots, absent: &'a [f64], x: &'a [f
         .enumerate()
         .map(|(slot, &agent)| {
             if agent == ABSENT {
-                return AgentView { states: absent, rates: absent, accelerations: absent, aux: absent };
+                return AgentView::absent(absent);
             }
             let other = &agents.agents[agent];
             let states = if slot == 0 || agent == slots[0] { x } else { &other.states };
@@ -151,7 +151,7 @@ fn group_views<'a>(
         .iter()
         .map(|&agent| {
             if agent == ABSENT {
-                return AgentView { states: absent, rates: absent, accelerations: absent, aux: absent };
+                return AgentView::absent(absent);
             }
             let mut first = 0;
             let mut states: &[f64] = &agents.agents[agent].states;

@@ -128,8 +128,7 @@ impl Present {
     /// The rows of an agent, as deep as they have been made; NaN of one that is absent.
     pub fn view<'a>(&'a self, agents: &'a Agents<'_>, agent: usize) -> AgentView<'a> {
         if agent == ABSENT {
-            let row = self.absent.as_slice();
-            return AgentView { states: row, rates: row, accelerations: row, aux: row };
+            return AgentView::absent(&self.absent);
         }
         let rows = &self.rows[agent];
         AgentView {
