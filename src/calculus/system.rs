@@ -593,4 +593,17 @@ pub struct PairTransition {
     pub transition: TransitionSystem,
     /// The same when the two change places (rule 5): one flag per unordered pair, slot 0 the lower number.
     pub symmetric: bool,
+    /// How near the two are in some of their states where the condition holds; none: it may hold however far they are.
+    pub near: Vec<Near>,
+}
+
+/// A condition implies |own - other| <= within, for a state of one agent and one of another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Near {
+    /// State of the first.
+    pub own: usize,
+    /// State of the second.
+    pub other: usize,
+    /// How far apart they are at most.
+    pub within: f64,
 }

@@ -3,17 +3,18 @@
 use super::Refused;
 use super::arguments::{AlgorithmName, EngineArguments, PaperArguments};
 use crate::model::ir::Integrator;
-use crate::runtime::paper::{Algorithm, Paper};
+use crate::runtime::paper::{Algorithm, Form, Paper};
 
 /// The algorithm by its name, with the numbers that the user gives; `audit` has its misses counted.
 pub(super) fn algorithm(
     name: AlgorithmName,
+    form: Form,
     given: &PaperArguments,
     audit: bool,
 ) -> Result<Algorithm, Refused> {
     let paper = paper(given, audit)?;
     match name {
-        AlgorithmName::Masim => Ok(Algorithm::Masim),
+        AlgorithmName::Masim => Ok(Algorithm::Masim(form)),
         AlgorithmName::Masim2004 => Ok(Algorithm::Masim2004(paper)),
         AlgorithmName::Sasim2004 => Ok(Algorithm::Sasim2004(paper)),
     }
@@ -34,7 +35,7 @@ pub(super) fn single(arguments: &EngineArguments, audit: bool) -> Result<Algorit
             return Err(format!("`{name}` belongs to `--algorithm masim-2004` and `sasim-2004`"));
         }
     }
-    algorithm(arguments.algorithm, &arguments.paper, audit)
+    algorithm(arguments.algorithm, arguments.engine.form(), &arguments.paper, audit)
 }
 
 fn paper(given: &PaperArguments, audit: bool) -> Result<Paper, Refused> {

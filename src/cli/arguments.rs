@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::model::ir::Integrator;
+use crate::runtime::paper::Form;
 
 /// A language, a compiler and a simulator for multi-agent hybrid systems
 #[derive(Debug, Parser)]
@@ -80,7 +81,7 @@ pub(super) struct EngineArguments {
     pub(super) algorithm: AlgorithmName,
     #[command(flatten)]
     pub(super) paper: PaperArguments,
-    /// The form of the engine: `plain` (the default, until `fast` is built)
+    /// The form of the engine; both find the same events
     #[arg(long, value_enum, default_value_t)]
     pub(super) engine: Engine,
     /// The method of integration: `auto` (for now tsit5), `tsit5` (Runge-Kutta, orders 5 and 4), `adams`
@@ -247,11 +248,21 @@ pub(super) enum AlgorithmName {
 /// The form of the engine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum Engine {
-    /// Prunes pairs and uses all cores; not built yet
+    /// Lists near pairs only, and lets those run ahead who cannot meet anybody
     Fast,
-    /// Looks at everything, one thread
+    /// Looks at everything: slow and simple
     #[default]
     Plain,
+}
+
+impl Engine {
+    /// What the runtime takes.
+    pub(super) fn form(self) -> Form {
+        match self {
+            Engine::Fast => Form::Fast,
+            Engine::Plain => Form::Plain,
+        }
+    }
 }
 
 /// What evaluates the equations.

@@ -1,7 +1,7 @@
 //! What is refused before anything is done: options that are not built yet, each by its name, and a run without end.
 
 use super::Refused;
-use super::arguments::{Engine, EngineArguments};
+use super::arguments::EngineArguments;
 use crate::codegen::program::Program;
 use crate::model::Model;
 use crate::model::ir::Action;
@@ -12,10 +12,6 @@ pub(super) const FORMATTER: &str = "`hyc fmt` is not built yet: the printer does
 
 /// Refuses what the engine cannot do yet.
 pub(super) fn refuse_engine(arguments: &EngineArguments) -> Result<(), Refused> {
-    match arguments.engine {
-        Engine::Plain => {}
-        Engine::Fast => return Err(not_built("--engine fast", "plain")),
-    }
     match arguments.integrator {
         Some(integrator) if !integrator.is_built() => {
             Err(not_built(&format!("--integrator {}", integrator.name()), "tsit5"))
@@ -26,7 +22,7 @@ pub(super) fn refuse_engine(arguments: &EngineArguments) -> Result<(), Refused> 
 
 /// Refuses what the published algorithms cannot run.
 pub(super) fn refuse_aggregates(algorithm: Algorithm, program: &Program) -> Result<(), Refused> {
-    if algorithm == Algorithm::Masim || published_take(program) {
+    if matches!(algorithm, Algorithm::Masim(_)) || published_take(program) {
         return Ok(());
     }
     let name = algorithm.name();

@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     let report = Report {
         model: &name_of(&arguments.model),
         algorithm: algorithm.name(),
-        engine: "plain",
+        engine: algorithm.form().name(),
         integrator: program.run.integrator.settled().name(),
         backend: backend_name(arguments.engine.backend),
         threads: 1,

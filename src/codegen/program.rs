@@ -7,7 +7,7 @@ pub use crate::calculus::system::FunctionId;
 pub use crate::calculus::system::{
     ActionList, ActionStep, AgentSystem, Aggregate, Atom, ClaimKind, ClaimSystem, Column, Condition, Flow,
     Fold, Frame, Guard, Integrator, InteractionSystem, Kink, KinkKind, Layout, LetSystem, LetValue,
-    ModeSystem, PairTransition, Population, Quantified, Range, Record, Relation, Run, Slot, Target, Term,
+    ModeSystem, Near, PairTransition, Population, Quantified, Range, Record, Relation, Run, Slot, Target, Term,
     TransitionSystem, Trigger, VarRef,
 };
 use crate::codegen::kernel::{Kernel, StepKernel};

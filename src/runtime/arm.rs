@@ -323,6 +323,7 @@ impl<'p> Engine<'p, '_> {
         let mut concerned: Vec<usize> = written.before.keys().chain(&written.restarted).copied().collect();
         concerned.sort_unstable();
         concerned.dedup();
+        self.relist(&concerned)?;
         let is_written = |agent: usize| written.before.contains_key(&agent);
         let is_concerned = |agent: usize| is_written(agent) || written.restarted.contains(&agent);
         let mut woken = Vec::new();

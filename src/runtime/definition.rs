@@ -4,11 +4,20 @@
 //! aggregate is a condition too: its comparisons stand before those of the guard, those of inner aggregates first.
 
 use crate::codegen::program::{
-    Atom, ClaimSystem, Condition, Frame, Guard, PairTransition, Program, Quantified, Range, Slot,
+    Atom, ClaimSystem, Condition, Frame, Guard, Near, PairTransition, Program, Quantified, Range, Relation, Slot,
     TransitionSystem, Trigger,
 };
 use crate::runtime::fold;
 use crate::runtime::population::Agents;
+
+/// Which pairs of an interaction have instances.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Listing {
+    /// All.
+    All,
+    /// Those that are near enough for their condition to become true soon, where the compiler has found a range.
+    Near,
+}
 
 /// What a definition comes from.
 #[derive(Clone, Copy, Debug)]
@@ -61,6 +70,8 @@ pub struct Definition<'p> {
     pub n_rising: usize,
     /// The types that quantifiers and aggregates range over, and those reached from bound agents by links.
     pub quantified: Vec<usize>,
+    /// Of an interaction whose pairs are listed when they are near: how near they are where the condition holds.
+    pub near: &'p [Near],
 }
 
 impl Definition<'_> {
@@ -81,7 +92,7 @@ pub struct AtomShape {
 }
 
 /// All definitions of a program.
-pub fn definitions<'p>(agents: &Agents<'p>) -> Vec<Definition<'p>> {
+pub fn definitions<'p>(agents: &Agents<'p>, listing: Listing) -> Vec<Definition<'p>> {
     let program = agents.program;
     let mut definitions = Vec::new();
     for (ty, system) in program.types.iter().enumerate() {
@@ -100,10 +111,24 @@ pub fn definitions<'p>(agents: &Agents<'p>) -> Vec<Definition<'p>> {
     for interaction in &program.interactions {
         for pair in &interaction.transitions {
             let (frame, guard) = (&pair.transition.frame, guard_of(&pair.transition));
-            definitions.push(define(agents, Origin::Pair(pair), interaction.types[0], 0, frame, guard));
+            let mut definition = define(agents, Origin::Pair(pair), interaction.types[0], 0, frame, guard);
+            if listing == Listing::Near && may_be_listed(&definition) {
+                definition.near = &pair.near;
+            }
+            definitions.push(definition);
         }
     }
     definitions
+}
+
+/// Whether a pair that is not near need not be known: nothing is remembered of it but that its condition is false.
+fn may_be_listed(definition: &Definition<'_>) -> bool {
+    let when = |transition: &TransitionSystem| matches!(transition.trigger, Trigger::When(_));
+    definition.origin.transition().is_some_and(when)
+        && definition.n_rising == 0
+        && definition.folds.is_empty()
+        && definition.quantified.is_empty()
+        && definition.comparisons.iter().all(|atom| atom.relation != Relation::Crossing)
 }
 
 fn guard_of(transition: &TransitionSystem) -> Option<&Guard> {
@@ -169,6 +194,7 @@ fn define<'p>(
         rising,
         n_rising,
         quantified,
+        near: &[],
     }
 }
 

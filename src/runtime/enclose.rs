@@ -12,7 +12,7 @@ use crate::codegen::program::Atom;
 use crate::math::Interval;
 use crate::runtime::fold::{self, Folded};
 use crate::runtime::groups::Group;
-use crate::runtime::population::{ABSENT, Agent, Agents, Slots};
+use crate::runtime::population::{ABSENT, Agents, Slots};
 use crate::runtime::present::{Boxes, Depth};
 use crate::runtime::solve::control::Accuracy;
 
@@ -94,7 +94,7 @@ impl Enclosures {
             let n = agents.agents[agent].states.len();
             let rates: SmallVec<[Interval; 8]> = self.kept[group][kept].rates[first..first + n].into();
             places.push((agent, self.boxes.len(), n));
-            self.add_box(&agents.agents[agent], &rates, t, horizon);
+            self.add_box(agents, agent, &rates, t, horizon);
         }
         self.ranges += 1;
         let Self { registers, boxes, absent, absent_aux, .. } = self;
@@ -117,14 +117,31 @@ impl Enclosures {
         Some(out[0])
     }
 
+    /// Tells the bounds of an agent's states over [from, to], if there are any: number of the state, and bound.
+    pub fn states(
+        &mut self,
+        agents: &Agents<'_>,
+        groups: &[Group],
+        agent: usize,
+        (from, to): (f64, f64),
+        tell: &mut dyn FnMut(usize, Interval),
+    ) {
+        let number = agents.agents[agent].group;
+        let group = &groups[number];
+        let Some(kept) = self.enclose(agents, number, group, from, to - from) else { return };
+        let before = group.members.iter().take_while(|&&member| member != agent);
+        let first: usize = before.map(|&member| agents.agents[member].states.len()).sum();
+        let n = agents.agents[agent].states.len();
+        let rates: SmallVec<[Interval; 8]> = self.kept[number][kept].rates[first..first + n].into();
+        self.boxes.clear();
+        self.add_box(agents, agent, &rates, from, to - from);
+        self.boxes.iter().enumerate().for_each(|(state, &bound)| tell(state, bound));
+    }
+
     /// Appends the box of an agent's states over [t, t + horizon], from bounds of their rates.
-    fn add_box(&mut self, agent: &Agent, rates: &[Interval], t: f64, horizon: f64) {
-        self.state.resize(agent.states.len(), 0.0);
-        if t == agent.segment.end {
-            self.state.copy_from_slice(&agent.states);
-        } else {
-            agent.segment.states(t, &mut self.state);
-        }
+    fn add_box(&mut self, agents: &Agents<'_>, agent: usize, rates: &[Interval], t: f64, horizon: f64) {
+        self.state.resize(agents.agents[agent].states.len(), 0.0);
+        agents.states_at(agent, t, &mut self.state);
         let span = Interval { lo: 0.0, hi: horizon };
         for (&x, &rate) in self.state.iter().zip(rates) {
             let bound = Interval { lo: x, hi: x }.add(span.mul(rate));
@@ -177,14 +194,9 @@ impl Enclosures {
     fn picard(&mut self, agents: &Agents<'_>, group: &Group, t: f64, horizon: f64) -> Option<Vec<Interval>> {
         let mut start = Vec::new();
         for &member in &group.members {
-            let agent = &agents.agents[member];
             let first = start.len();
-            start.resize(first + agent.states.len(), 0.0);
-            if t == agent.segment.end {
-                start[first..].copy_from_slice(&agent.states);
-            } else {
-                agent.segment.states(t, &mut start[first..]);
-            }
+            start.resize(first + agents.agents[member].states.len(), 0.0);
+            agents.states_at(member, t, &mut start[first..]);
         }
         let time = Interval { lo: t, hi: t + horizon };
         let span = Interval { lo: 0.0, hi: horizon };

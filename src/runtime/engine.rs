@@ -14,12 +14,14 @@ use crate::runtime::detect::CurveRows;
 use crate::runtime::enclose::Enclosures;
 use crate::runtime::failure::{Failure, Place, Reason};
 use crate::runtime::groups::Groups;
-use crate::runtime::guards::{Guards, Origin, TooManyGuards};
+use crate::runtime::guards::{Guards, Listing, Origin, TooManyGuards};
 use crate::runtime::limits::Limits;
+use crate::runtime::neighbours::Neighbours;
 use crate::runtime::notes::Notes;
 use crate::runtime::observe::{Cell, End, FalseAssert, Last, Observer, Outcome, Stats, TypeStats};
 use crate::runtime::population::Agents;
 use crate::runtime::present::{Depth, Present};
+use crate::runtime::reach::Reaches;
 use crate::runtime::record::Recorder;
 use crate::runtime::repetition::Repetitions;
 use crate::runtime::solve::MethodName;
@@ -88,6 +90,10 @@ pub struct Engine<'p, 'o> {
     pub registers: Vec<Interval>,
     /// Bounds for sleeping.
     pub enclosures: Enclosures,
+    /// Where agents can get to.
+    pub reaches: Reaches,
+    /// The near pairs; none in the plain form.
+    pub neighbours: Neighbours,
     /// What is due when.
     pub queues: Queues,
     /// Makes rows of trajectories.
@@ -137,6 +143,7 @@ impl<'p, 'o> Engine<'p, 'o> {
     /// A run that has not begun.
     pub fn new(
         program: &'p Program,
+        listing: Listing,
         limits: &Limits,
         interrupt: &'o AtomicBool,
         observer: &'o mut dyn Observer,
@@ -145,7 +152,7 @@ impl<'p, 'o> Engine<'p, 'o> {
         let accuracy = Accuracy { tolerance: run.tolerance, absolute: run.absolute.unwrap_or(run.tolerance) };
         let time_end = run.until.unwrap_or(f64::INFINITY);
         let agents = Agents::new(program);
-        let guards = Guards::new(&agents, limits.guards_max)
+        let guards = Guards::new(&agents, listing, limits.guards_max)
             .map_err(|TooManyGuards { needed }| Reason::GuardLimit { needed, limit: limits.guards_max })?;
         Ok(Self {
             program,
@@ -153,8 +160,10 @@ impl<'p, 'o> Engine<'p, 'o> {
             stepper: Stepper::new(&agents, method(run.integrator), accuracy, time_end, limits),
             curves: CurveRows::new(&agents),
             enclosures: Enclosures::new(&agents, accuracy),
+            reaches: Reaches::new(&agents, accuracy, time_end),
+            neighbours: Neighbours::default(),
             recorder: Recorder::new(program, time_end),
-            repetitions: Repetitions::new(limits, guards.instances.len()),
+            repetitions: Repetitions::new(limits),
             groups: Groups::default(),
             points: Vec::new(),
             registers: Vec::new(),
@@ -247,7 +256,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             starts: counts.starts,
             rhs_evaluations: counts.rhs_evaluations + self.present.rhs_evaluations,
             guard_evaluations: self.curves.evaluations,
-            guard_ranges: self.curves.ranges + self.enclosures.ranges,
+            guard_ranges: self.curves.ranges + self.enclosures.ranges + self.reaches.ranges,
             pairs_listed: self.guards.n_pairs,
             undecided_roots: self.n_undecided,
             cuts: self.n_cuts,
@@ -255,7 +264,8 @@ impl<'p, 'o> Engine<'p, 'o> {
             operations: counts.operations
                 + self.present.operations
                 + self.curves.operations
-                + self.enclosures.operations,
+                + self.enclosures.operations
+                + self.reaches.operations,
             misses: None,
             types: types.collect(),
             transitions: labels.collect(),

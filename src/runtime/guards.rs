@@ -7,8 +7,8 @@
 use smallvec::SmallVec;
 
 use crate::codegen::program::{Atom, Layout, Quantified, Range, Relation};
-pub use crate::runtime::definition::Origin;
 use crate::runtime::definition::{AtomShape, Definition, definitions};
+pub use crate::runtime::definition::{Listing, Origin};
 use crate::runtime::population::{Agents, Slots};
 
 /// An instance of a definition.
@@ -75,74 +75,10 @@ pub struct AtomState {
     pub version: u32,
 }
 
-/// All guards of a run.
-pub struct Guards<'p> {
-    /// By number.
-    pub definitions: Vec<Definition<'p>>,
-    /// By number.
-    pub instances: Vec<Instance>,
-    /// By number.
-    pub atoms: Vec<AtomState>,
-    /// `rising`: whether its condition has been false since arming.
-    pub rising: Vec<bool>,
-    /// For each agent, the instances of which it is a root.
-    pub of_agent: Vec<Vec<u32>>,
-    /// For each type, the instances with a quantifier that may read any agent of it.
-    pub over_type: Vec<Vec<u32>>,
-    /// How many instances range over more than one agent (pairs, and bindings of quantifiers).
-    pub n_pairs: u64,
-}
-
-/// More instances than the limit allows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TooManyGuards {
-    /// How many there would be.
-    pub needed: u128,
-}
-
-impl<'p> Guards<'p> {
-    /// All instances, none of them active.
-    pub fn new(agents: &Agents<'p>, guards_max: usize) -> Result<Self, TooManyGuards> {
-        let definitions = definitions(agents);
-        let needed = definitions.iter().map(|definition| size(agents, definition)).sum();
-        if needed > guards_max as u128 {
-            return Err(TooManyGuards { needed });
-        }
-        let mut guards = Self {
-            definitions: Vec::new(),
-            instances: Vec::new(),
-            atoms: Vec::new(),
-            rising: Vec::new(),
-            of_agent: vec![Vec::new(); agents.len()],
-            over_type: vec![Vec::new(); agents.of_type.len()],
-            n_pairs: 0,
-        };
-        for (number, definition) in definitions.iter().enumerate() {
-            for_each_binding(agents, definition, &mut |roots| guards.add(number, definition, roots));
-        }
-        guards.definitions = definitions;
-        for index in 0..guards.atoms.len() {
-            guards.atoms[index].left_out = guards.leaves_out(agents, index);
-        }
-        Ok(guards)
-    }
-
-    fn add(&mut self, number: usize, definition: &Definition<'p>, roots: [u32; 2]) {
-        let instance = self.instances.len() as u32;
-        self.instances.push(Instance {
-            definition: number as u32,
-            roots,
-            atoms: self.atoms.len() as u32,
-            rising: self.rising.len() as u32,
-            active: false,
-            armed: false,
-            aged: false,
-            arming: 0,
-            entry: 0.0,
-            delay: 0.0,
-            periods: 0,
-        });
-        let fresh = AtomState {
+impl AtomState {
+    /// Of an instance that has not been active.
+    fn new(instance: u32) -> Self {
+        Self {
             instance,
             truth: false,
             touched: false,
@@ -159,8 +95,87 @@ impl<'p> Guards<'p> {
             skip: 0,
             backoff: 0,
             version: 0,
+        }
+    }
+}
+
+/// All guards of a run.
+pub struct Guards<'p> {
+    /// By number.
+    pub definitions: Vec<Definition<'p>>,
+    /// By number.
+    pub instances: Vec<Instance>,
+    /// By number.
+    pub atoms: Vec<AtomState>,
+    /// `rising`: whether its condition has been false since arming.
+    pub rising: Vec<bool>,
+    /// For each agent, the instances of which it is a root.
+    pub of_agent: Vec<Vec<u32>>,
+    /// For each type, the instances with a quantifier that may read any agent of it.
+    pub over_type: Vec<Vec<u32>>,
+    /// How many instances range over more than one agent (pairs, and bindings of quantifiers), those listed anew included.
+    pub n_pairs: u64,
+    /// For each definition, instances of pairs that are not listed any more, to be used again.
+    free: Vec<Vec<u32>>,
+}
+
+
+/// More instances than the limit allows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooManyGuards {
+    /// How many there would be.
+    pub needed: u128,
+}
+
+impl<'p> Guards<'p> {
+    /// All instances, none of them active; of interactions whose pairs are listed when they are near, none yet.
+    pub fn new(agents: &Agents<'p>, listing: Listing, guards_max: usize) -> Result<Self, TooManyGuards> {
+        let definitions = definitions(agents, listing);
+        let whole = || definitions.iter().filter(|definition| definition.near.is_empty());
+        let needed = whole().map(|definition| size(agents, definition)).sum();
+        if needed > guards_max as u128 {
+            return Err(TooManyGuards { needed });
+        }
+        let mut guards = Self {
+            definitions: Vec::new(),
+            instances: Vec::new(),
+            atoms: Vec::new(),
+            rising: Vec::new(),
+            of_agent: vec![Vec::new(); agents.len()],
+            over_type: vec![Vec::new(); agents.of_type.len()],
+            n_pairs: 0,
+            free: vec![Vec::new(); definitions.len()],
         };
-        self.atoms.resize(self.atoms.len() + definition.n_atoms, fresh);
+        for (number, definition) in definitions.iter().enumerate() {
+            if definition.near.is_empty() {
+                for_each_binding(agents, definition, &mut |roots| {
+                    guards.add(number, definition, roots);
+                });
+            }
+        }
+        guards.definitions = definitions;
+        for index in 0..guards.atoms.len() {
+            guards.atoms[index].left_out = guards.leaves_out(agents, index);
+        }
+        Ok(guards)
+    }
+
+    fn add(&mut self, number: usize, definition: &Definition<'p>, roots: [u32; 2]) -> u32 {
+        let instance = self.instances.len() as u32;
+        self.instances.push(Instance {
+            definition: number as u32,
+            roots,
+            atoms: self.atoms.len() as u32,
+            rising: self.rising.len() as u32,
+            active: false,
+            armed: false,
+            aged: false,
+            arming: 0,
+            entry: 0.0,
+            delay: 0.0,
+            periods: 0,
+        });
+        self.atoms.resize(self.atoms.len() + definition.n_atoms, AtomState::new(instance));
         self.rising.resize(self.rising.len() + definition.n_rising, false);
         self.of_agent[roots[0] as usize].push(instance);
         if matches!(definition.origin, Origin::Pair(_)) {
@@ -172,6 +187,41 @@ impl<'p> Guards<'p> {
         for &ty in &definition.quantified {
             self.over_type[ty].push(instance);
         }
+        instance
+    }
+
+    /// An instance, not active, of a definition whose pairs are listed when they are near.
+    pub fn list(&mut self, number: usize, roots: [u32; 2]) -> u32 {
+        let Some(instance) = self.free[number].pop() else {
+            let definition = self.definitions[number].clone();
+            return self.add(number, &definition, roots);
+        };
+        self.instances[instance as usize].roots = roots;
+        for root in roots {
+            self.of_agent[root as usize].push(instance);
+        }
+        self.n_pairs += 1;
+        for index in self.atom_range(instance) {
+            let state = &mut self.atoms[index];
+            *state = AtomState { version: state.version, ..AtomState::new(instance) };
+        }
+        instance
+    }
+
+    /// Takes an instance from its agents; whatever is in a queue for it is void.
+    pub fn unlist(&mut self, instance: u32) {
+        let state = &mut self.instances[instance as usize];
+        state.active = false;
+        state.armed = false;
+        state.arming += 1;
+        let (number, roots) = (state.definition as usize, state.roots);
+        for index in self.atom_range(instance) {
+            self.atoms[index].version += 1;
+        }
+        for root in roots {
+            self.of_agent[root as usize].retain(|&other| other != instance);
+        }
+        self.free[number].push(instance);
     }
 
     /// The definition of an instance.
@@ -306,8 +356,7 @@ fn size(agents: &Agents<'_>, definition: &Definition<'_>) -> u128 {
 }
 
 /// Calls `visit` with the agents of every instance of a definition, in order: every agent of the type; every ordered
-/// pair of different agents, or every unordered one with the lower number first. All pairs, for now: what lists fewer
-/// candidates takes the place of this function.
+/// pair of different agents, or every unordered one with the lower number first.
 fn for_each_binding(agents: &Agents<'_>, definition: &Definition<'_>, visit: &mut dyn FnMut([u32; 2])) {
     for &first in &agents.of_type[definition.ty] {
         match definition.origin {

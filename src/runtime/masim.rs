@@ -27,20 +27,28 @@ impl Engine<'_, '_> {
     /// Runs to the end.
     pub fn run(&mut self) -> Result<End, Failure> {
         self.begin()?;
+        match self.run_until(self.time_end)? {
+            Some(end) => Ok(end),
+            None => self.finish(),
+        }
+    }
+
+    /// Runs until all is known up to `until`, s; or to an end that comes before.
+    pub fn run_until(&mut self, until: f64) -> Result<Option<End>, Failure> {
         let mut rounds: u64 = 0;
         loop {
             if let Some(stop) = self.stop.take() {
-                return Ok(End::Stop { reason: stop.reason, agent: stop.agent, by: stop.by });
+                return Ok(Some(End::Stop { reason: stop.reason, agent: stop.agent, by: stop.by }));
             }
             rounds += 1;
             if rounds.is_multiple_of(ROUNDS) {
                 self.tell_progress()?;
             }
-            let cover = self.cover().min(self.time_end);
+            let cover = self.cover().min(until);
             self.certify_up_to(cover);
             if self.interrupted() {
                 self.present.go(cover.max(self.present.time));
-                return Ok(End::Interrupted);
+                return Ok(Some(End::Interrupted));
             }
             let cause = self.next_cause();
             let sample = self.recorder.next();
@@ -51,8 +59,8 @@ impl Engine<'_, '_> {
                 && (cause + time_resolution(cause)).min(self.time_end) <= cover
             {
                 self.execute(cause)?;
-            } else if cover >= self.time_end {
-                return self.finish();
+            } else if cover >= until {
+                return Ok(None);
             } else if cover > ENDLESS {
                 self.present.go(cover);
                 return Err(Reason::NeverEnds { time: cover }.into());
@@ -77,6 +85,7 @@ impl Engine<'_, '_> {
         self.run_entries(&entries, &mut written)?;
         self.set_locks(written.restarted.iter().copied());
         self.recorder.begin(&self.agents, &mut self.present, self.observer)?;
+        self.begin_lists()?;
         self.arm_all()?;
         let instances = 0..self.guards.instances.len() as u32;
         let enabled = instances.clone().filter(|&instance| self.enabled(instance));

@@ -44,6 +44,8 @@ mod guards;
 mod truth;
 mod detect;
 mod enclose;
+mod reach;
+mod grid;
 mod comparisons;
 mod notes;
 mod flow;
@@ -52,14 +54,17 @@ mod advance;
 mod stiffness;
 mod repetition;
 mod record;
+mod neighbours;
 mod engine;
 mod act;
 mod arm;
+mod near_pairs;
 mod instant;
 mod certify;
 mod explain;
 mod gather;
 mod masim;
+mod windows;
 mod watch;
 mod audit;
 mod clocks;
@@ -75,7 +80,8 @@ use engine::Engine;
 use failure::Failure;
 pub use limits::Limits;
 use observe::{End, Observer, Outcome, Stats};
-pub use paper::Algorithm;
+pub use paper::{Algorithm, Form};
+use guards::Listing;
 
 /// Runs a program and tells the observer what happens.
 ///
@@ -87,7 +93,7 @@ pub fn simulate(
     interrupt: &AtomicBool,
     observer: &mut dyn Observer,
 ) -> Outcome {
-    simulate_by(Algorithm::Masim, program, limits, interrupt, observer)
+    simulate_by(Algorithm::default(), program, limits, interrupt, observer)
 }
 
 /// The same by another algorithm.
@@ -98,13 +104,20 @@ pub fn simulate_by(
     interrupt: &AtomicBool,
     observer: &mut dyn Observer,
 ) -> Outcome {
-    let mut engine = match Engine::new(program, limits, interrupt, observer) {
+    let listing = match algorithm.form() {
+        Form::Fast => Listing::Near,
+        Form::Plain => Listing::All,
+    };
+    let mut engine = match Engine::new(program, listing, limits, interrupt, observer) {
         Ok(engine) => engine,
         Err(failure) => return stillborn(failure),
     };
     let (mut clocks, end) = match algorithm {
-        Algorithm::Masim => {
-            let end = engine.run();
+        Algorithm::Masim(form) => {
+            let end = match form {
+                Form::Fast => engine.run_in_windows(),
+                Form::Plain => engine.run(),
+            };
             let end = last_words(&mut engine, end);
             return engine.outcome(end);
         }

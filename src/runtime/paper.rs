@@ -2,22 +2,55 @@
 //! user gives.
 
 /// An algorithm.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Algorithm {
     /// Each agent on its own clock; events certified.
-    #[default]
-    Masim,
+    Masim(Form),
     /// Algorithms 1 and 2 of Esposito & Kumar (2004).
     Masim2004(Paper),
     /// Algorithms 3 and 4: one clock for all.
     Sasim2004(Paper),
 }
 
-impl Algorithm {
+/// The form of the engine that runs `masim`. Both find the same events.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Form {
+    /// In windows of time: who cannot meet anybody runs ahead, and only near pairs are listed.
+    Fast,
+    /// One queue of clocks, all pairs: slow and simple.
+    #[default]
+    Plain,
+}
+
+impl Form {
     /// The name that users give it.
     pub fn name(self) -> &'static str {
         match self {
-            Algorithm::Masim => "masim",
+            Form::Fast => "fast",
+            Form::Plain => "plain",
+        }
+    }
+}
+
+impl Default for Algorithm {
+    fn default() -> Self {
+        Algorithm::Masim(Form::default())
+    }
+}
+
+impl Algorithm {
+    /// The form of the engine that runs it: the published ones have the plain one only.
+    pub fn form(self) -> Form {
+        match self {
+            Algorithm::Masim(form) => form,
+            Algorithm::Masim2004(_) | Algorithm::Sasim2004(_) => Form::Plain,
+        }
+    }
+
+    /// The name that users give it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Algorithm::Masim(_) => "masim",
             Algorithm::Masim2004(_) => "masim-2004",
             Algorithm::Sasim2004(_) => "sasim-2004",
         }

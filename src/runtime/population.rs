@@ -92,6 +92,21 @@ impl<'p> Agents<'p> {
         }
     }
 
+    /// The states of an agent at `t`, which is not before what is kept of its way.
+    pub fn states_at(&self, agent: usize, t: f64, states: &mut [f64]) {
+        let agent = &self.agents[agent];
+        if agent.segment.end == t {
+            states.copy_from_slice(&agent.states);
+        } else {
+            agent.segment.states(t, states);
+        }
+    }
+
+    /// How far an agent has come, and its states there; `clock` is that of its group.
+    pub fn at_clock(&self, agent: usize, clock: f64) -> (f64, SmallVec<[f64; 8]>) {
+        (clock, self.agents[agent].states.as_slice().into())
+    }
+
     /// What is read of an agent that is absent.
     pub fn absent_row(&self) -> &[f64] {
         &self.absent

@@ -88,11 +88,7 @@ impl Present {
             let agent = &agents.agents[number];
             let rows = &mut self.rows[number];
             rows.states.resize(agent.states.len(), 0.0);
-            if agent.segment.end == self.time {
-                rows.states.copy_from_slice(&agent.states);
-            } else {
-                agent.segment.states(self.time, &mut rows.states);
-            }
+            agents.states_at(number, self.time, &mut rows.states);
             rows.made[0] = self.stamp;
             return;
         }

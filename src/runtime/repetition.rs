@@ -57,7 +57,7 @@ pub enum Finding {
 pub struct Repetitions {
     microsteps_max: u32,
     zeno_events: u32,
-    tracks: Vec<Track>,
+    tracks: FxHashMap<u32, Track>,
     kinks: FxHashMap<(usize, usize), Track>,
     /// The instances that fired last, in order.
     recent: Vec<u32>,
@@ -70,11 +70,11 @@ const RECENT: usize = 64;
 
 impl Repetitions {
     /// No firings yet.
-    pub fn new(limits: &Limits, n_instances: usize) -> Self {
+    pub fn new(limits: &Limits) -> Self {
         Self {
             microsteps_max: limits.microsteps_max,
             zeno_events: limits.zeno_events,
-            tracks: vec![Track::default(); n_instances],
+            tracks: FxHashMap::default(),
             kinks: FxHashMap::default(),
             recent: Vec::new(),
             instant: 1,
@@ -88,7 +88,7 @@ impl Repetitions {
         }
         self.recent.push(instance);
         let (instant, limit) = (self.instant, self.zeno_events);
-        let track = &mut self.tracks[instance as usize];
+        let track = self.tracks.entry(instance).or_default();
         track.in_instant = if track.instant == instant { track.in_instant + 1 } else { 1 };
         let same_instant = track.instant == instant;
         track.instant = instant;
@@ -105,6 +105,11 @@ impl Repetitions {
     pub fn turned(&mut self, agent: usize, kink: usize, t: f64) -> Finding {
         let limit = self.zeno_events;
         count(self.kinks.entry((agent, kink)).or_default(), t, limit)
+    }
+
+    /// Forgets the firings of an instance, whose number another has now.
+    pub fn forget(&mut self, instance: u32) {
+        self.tracks.remove(&instance);
     }
 
     /// The instances that repeat, each once, in the order of their firing.

@@ -66,7 +66,7 @@ pub fn measure(
 ) -> Result<Measured, Box<Diagnostic>> {
     let own = (program.run.tolerance, program.run.integrator);
     program.run.tolerance = tolerance;
-    if algorithm != Algorithm::Masim {
+    if !matches!(algorithm, Algorithm::Masim(_)) {
         program.run.integrator = Integrator::Adams;
     }
     let measured = run_and_time(program, with_audit(algorithm, audit), limits);
@@ -101,7 +101,7 @@ fn run_and_time(
 
 fn with_audit(algorithm: Algorithm, audit: bool) -> Algorithm {
     match algorithm {
-        Algorithm::Masim => Algorithm::Masim,
+        Algorithm::Masim(form) => Algorithm::Masim(form),
         Algorithm::Masim2004(paper) => Algorithm::Masim2004(Paper { audit, ..paper }),
         Algorithm::Sasim2004(paper) => Algorithm::Sasim2004(Paper { audit, ..paper }),
     }

@@ -20,7 +20,7 @@ use super::{Exit, Refused};
 use crate::codegen::program::Program;
 use crate::model::Settings;
 use crate::runtime::limits::Limits;
-use crate::runtime::paper::Algorithm;
+use crate::runtime::paper::{Algorithm, Form};
 use measure::{agreement, measure};
 use sweep::{Cell, cells, swept};
 use table::Entry;
@@ -35,7 +35,7 @@ pub const WITHIN: f64 = 1e-3;
 pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit, Refused> {
     let limits = super::limits::Limits::new(&arguments.limits)?.run;
     let algorithms: Vec<Algorithm> = (arguments.algorithms.iter())
-        .map(|&name| algorithm(name, &arguments.paper, true))
+        .map(|&name| algorithm(name, Form::Plain, &arguments.paper, true))
         .collect::<Result<_, _>>()?;
     let parameters: Vec<_> =
         arguments.params.iter().map(|(name, value)| swept(name, value)).collect::<Result<_, _>>()?;
@@ -107,7 +107,7 @@ fn run_cell(
         bar.inc(1);
         measured.map_err(|diagnostic| tell(&sources, std::slice::from_ref(&diagnostic)))
     };
-    let Ok(tight) = runs(&mut program, Algorithm::Masim, TIGHT) else { return Ok(Exit::RunError) };
+    let Ok(tight) = runs(&mut program, Algorithm::Masim(Form::Plain), TIGHT) else { return Ok(Exit::RunError) };
     for &tolerance in &tolerances {
         for (number, &algorithm) in algorithms.iter().enumerate() {
             let Ok(measured) = runs(&mut program, algorithm, tolerance) else { return Ok(Exit::RunError) };

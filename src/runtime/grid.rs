@@ -1,0 +1,232 @@
+//! A grid of boxes: finds all pairs that overlap without looking at all pairs.
+//!
+//! Every box lies in all cells that it overlaps, cells being about as wide as boxes are. Two that overlap are found
+//! once, in the cell of the lower corner of what they have in common. The cells of all boxes are one sorted list; boxes
+//! that change afterwards are entered beside it. A box too large for the cells is compared with every other.
+
+use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
+
+use crate::math::Interval;
+
+/// How many dimensions have cells; boxes of more are compared in all of them.
+const DIMENSIONS: usize = 3;
+/// A box that overlaps more cells in one dimension is too large.
+const CELLS_MAX: f64 = 4.0;
+/// Cells are numbered from minus this to this in each dimension, and again from there.
+const CELL_NUMBERS: i64 = 1 << 20;
+
+/// The cell of a place; cells far apart may share a number.
+type Cell = u64;
+
+/// Boxes of one number of dimensions, in cells.
+#[derive(Clone, Debug, Default)]
+pub struct Grid {
+    n: usize,
+    /// `n` intervals for each box.
+    boxes: Vec<Interval>,
+    /// One over the width of a cell.
+    scale: [f64; DIMENSIONS],
+    sorted: Vec<(Cell, u32)>,
+    /// Where those of boxes that changed lie now.
+    moved: FxHashMap<Cell, Vec<u32>>,
+    /// Boxes that are too large.
+    large: Vec<u32>,
+}
+
+impl Grid {
+    /// A grid of these boxes, `n` intervals each.
+    pub fn new(n: usize, boxes: Vec<Interval>) -> Self {
+        let mut grid = Self { n, boxes, ..Self::default() };
+        let n_boxes = grid.len();
+        for dimension in 0..n.min(DIMENSIONS) {
+            let widths = (0..n_boxes).map(|k| grid.boxes[k * n + dimension].width());
+            let (sum, count) = widths
+                .filter(|width| width.is_finite())
+                .fold((0.0, 0_usize), |(sum, count), width| (sum + width, count + 1));
+            grid.scale[dimension] = if sum > 0.0 { count as f64 / (2.0 * sum) } else { 1.0 };
+        }
+        for number in 0..n_boxes as u32 {
+            match grid.cells(number) {
+                Some(cells) => grid.sorted.extend(cells.into_iter().map(|cell| (cell, number))),
+                None => grid.large.push(number),
+            }
+        }
+        grid.sorted.sort_unstable();
+        grid
+    }
+
+    /// How many boxes there are.
+    pub fn len(&self) -> usize {
+        if self.n == 0 { 0 } else { self.boxes.len() / self.n }
+    }
+
+    /// A box.
+    pub fn get(&self, number: u32) -> &[Interval] {
+        &self.boxes[number as usize * self.n..][..self.n]
+    }
+
+    /// Calls `visit` for every two boxes that overlap, once, the lower number first.
+    pub fn for_each_pair(&self, visit: &mut dyn FnMut(u32, u32)) {
+        debug_assert!(self.moved.is_empty(), "pairs are listed of a new grid");
+        for cell in self.sorted.chunk_by(|a, b| a.0 == b.0) {
+            for (k, &(number, a)) in cell.iter().enumerate() {
+                for &(_, b) in &cell[k + 1..] {
+                    // A cell that stands for several places may hold a box twice.
+                    if a != b && self.overlap(a, b) && self.corner(a, b) == number {
+                        visit(a.min(b), a.max(b));
+                    }
+                }
+            }
+        }
+        for (k, &a) in self.large.iter().enumerate() {
+            for b in 0..self.len() as u32 {
+                if a != b && self.large[..k].binary_search(&b).is_err() && self.overlap(a, b) {
+                    visit(a.min(b), a.max(b));
+                }
+            }
+        }
+    }
+
+    /// Changes a box.
+    pub fn change(&mut self, number: u32, bounds: &[Interval]) {
+        self.boxes[number as usize * self.n..][..self.n].copy_from_slice(bounds);
+        match self.cells(number) {
+            Some(cells) => {
+                for cell in cells {
+                    let moved = self.moved.entry(cell).or_default();
+                    if !moved.contains(&number) {
+                        moved.push(number);
+                    }
+                }
+            }
+            None if !self.large.contains(&number) => self.large.push(number),
+            None => {}
+        }
+    }
+
+    /// All other boxes that overlap one, rising.
+    pub fn around(&self, number: u32) -> Vec<u32> {
+        let mut found = self.large.clone();
+        match self.cells(number) {
+            Some(cells) => {
+                for cell in cells {
+                    let first = self.sorted.partition_point(|entry| entry.0 < cell);
+                    let here = self.sorted[first..].iter().take_while(|entry| entry.0 == cell);
+                    found.extend(here.map(|entry| entry.1));
+                    found.extend(self.moved.get(&cell).into_iter().flatten());
+                }
+            }
+            None => found = (0..self.len() as u32).collect(),
+        }
+        found.sort_unstable();
+        found.dedup();
+        found.retain(|&other| other != number && self.overlap(number, other));
+        found
+    }
+
+    fn overlap(&self, a: u32, b: u32) -> bool {
+        self.get(a).iter().zip(self.get(b)).all(|(a, b)| a.lo <= b.hi && b.lo <= a.hi)
+    }
+
+    /// The cell of the lower corner of what two boxes that overlap have in common.
+    fn corner(&self, a: u32, b: u32) -> Cell {
+        let (a, b) = (self.get(a), self.get(b));
+        let place = |dimension: usize| self.place(dimension, a[dimension].lo.max(b[dimension].lo));
+        (0..self.n.min(DIMENSIONS)).fold(0, |cell, dimension| join(cell, place(dimension)))
+    }
+
+    /// The number of the cell in which x lies, in one dimension.
+    fn place(&self, dimension: usize, x: f64) -> i64 {
+        (x * self.scale[dimension]).floor() as i64
+    }
+
+    /// The cells that a box overlaps; none if there are too many.
+    fn cells(&self, number: u32) -> Option<SmallVec<[Cell; 8]>> {
+        let mut cells: SmallVec<[Cell; 8]> = SmallVec::from_elem(0, 1);
+        for (dimension, bound) in self.get(number).iter().take(DIMENSIONS).enumerate() {
+            if !(bound.width() * self.scale[dimension] < CELLS_MAX) {
+                return None;
+            }
+            let (first, last) = (self.place(dimension, bound.lo), self.place(dimension, bound.hi));
+            cells = cells
+                .iter()
+                .flat_map(|&cell| (first..=last).map(move |place| join(cell, place)))
+                .collect();
+        }
+        cells.sort_unstable();
+        cells.dedup();
+        Some(cells)
+    }
+}
+
+/// A cell's number with one more dimension.
+fn join(cell: Cell, place: i64) -> Cell {
+    (cell << 21) | (place.rem_euclid(2 * CELL_NUMBERS) as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dice() -> impl FnMut() -> f64 {
+        let mut state: u64 = 0x9E37_79B9_7F4A_7C15;
+        move || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        }
+    }
+
+    fn overlap(a: &[Interval], b: &[Interval]) -> bool {
+        a.iter().zip(b).all(|(a, b)| a.lo <= b.hi && b.lo <= a.hi)
+    }
+
+    /// Boxes of very different sizes, some without end.
+    fn some(n: usize, dimensions: usize, die: &mut dyn FnMut() -> f64) -> Vec<Interval> {
+        (0..n * dimensions)
+            .map(|_| {
+                let (place, size) = (1e3 * (die() - 0.5), 10.0_f64.powf(4.0 * die() - 2.5));
+                if die() < 0.01 { Interval::WHOLE } else { Interval { lo: place, hi: place + size } }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_pairs_are_those_of_all_pairs_each_once() {
+        let mut die = dice();
+        for dimensions in 1..=4 {
+            let boxes = some(300, dimensions, &mut die);
+            let grid = Grid::new(dimensions, boxes);
+            let mut found = Vec::new();
+            grid.for_each_pair(&mut |a, b| found.push((a, b)));
+            found.sort_unstable();
+            let mut expected = Vec::new();
+            for a in 0..300 {
+                expected.extend((a + 1..300).filter(|&b| overlap(grid.get(a), grid.get(b))).map(|b| (a, b)));
+            }
+            assert!(!expected.is_empty());
+            assert_eq!(found, expected, "{dimensions} dimensions");
+        }
+    }
+
+    #[test]
+    fn a_changed_box_finds_and_is_found() {
+        let mut die = dice();
+        for dimensions in 1..=4 {
+            let mut grid = Grid::new(dimensions, some(200, dimensions, &mut die));
+            for round in 0..200 {
+                let number = (die() * 200.0) as u32;
+                let bounds = some(1, dimensions, &mut die);
+                grid.change(number, &bounds);
+                for asked in [number, (die() * 200.0) as u32] {
+                    let expected: Vec<u32> = (0..200)
+                        .filter(|&b| b != asked && overlap(grid.get(asked), grid.get(b)))
+                        .collect();
+                    assert_eq!(grid.around(asked), expected, "{dimensions} dimensions, round {round}");
+                }
+            }
+        }
+    }
+}

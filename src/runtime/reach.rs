@@ -1,0 +1,169 @@
+//! Where agents can get to: boxes of their states over a stretch of time.
+//!
+//! Rates that are bounded whatever the states are (a speed times a cosine, a saturated input) bound the way of a state
+//! for as long as the agent follows the same flow with the same parameters; a state whose rate is bounded by those has
+//! bounds too. These are kept until the agent's group changes its version. Other states have a box by Picard's operator
+//! ([`Enclosures`]), or none.
+
+use smallvec::SmallVec;
+
+use crate::codegen::kernel::AgentBox;
+use crate::math::Interval;
+use crate::runtime::enclose::Enclosures;
+use crate::runtime::groups::Group;
+use crate::runtime::population::{ABSENT, Agents};
+use crate::runtime::present::Boxes;
+use crate::runtime::solve::control::Accuracy;
+
+/// Bounds of each state's rate, valid while the agent's group has the same version.
+#[derive(Clone, Copy, Debug)]
+struct Kept {
+    version: u32,
+    first: u32,
+    /// From here on they are valid, s.
+    since: f64,
+}
+
+/// Boxes of agents; keeps what bounds their rates.
+pub struct Reaches {
+    accuracy: Accuracy,
+    time_end: f64,
+    kept: Vec<Kept>,
+    rates: Vec<Interval>,
+    registers: Vec<Interval>,
+    absent: Vec<Interval>,
+    absent_aux: Vec<f64>,
+    /// Right-hand sides evaluated over intervals.
+    pub ranges: u64,
+    /// Their arithmetic operations.
+    pub operations: u64,
+}
+
+/// Any finite number.
+const ANY: Interval = Interval { lo: f64::MIN, hi: f64::MAX };
+/// A bound beyond this is none.
+const BOUND_MAX: f64 = 1e150;
+/// How often rates are bounded again by what the last bounds say of the states.
+const PASSES: usize = 3;
+
+impl Reaches {
+    /// Nothing is known yet; no stretch of time leads beyond `time_end`, s.
+    pub fn new(agents: &Agents<'_>, accuracy: Accuracy, time_end: f64) -> Self {
+        let mut first = 0;
+        let kept = agents.agents.iter().map(|agent| {
+            let kept = Kept { version: u32::MAX, first, since: f64::INFINITY };
+            first += agent.states.len() as u32;
+            kept
+        });
+        let kept: Vec<Kept> = kept.collect();
+        let width = agents.row_width();
+        Self {
+            accuracy,
+            time_end: if time_end.is_finite() { time_end } else { 1e9 },
+            kept,
+            rates: vec![Interval::WHOLE; first as usize],
+            registers: Vec::new(),
+            absent: vec![Interval::WHOLE; width],
+            absent_aux: vec![f64::NAN; width],
+            ranges: 0,
+            operations: 0,
+        }
+    }
+
+    /// The box of an agent's states over [from, to], one place of `out` each; WHOLE where there is no bound.
+    ///
+    /// All of [from, to] lies at or after the present; where the agent's clock is does not matter.
+    pub fn states(
+        &mut self,
+        agents: &Agents<'_>,
+        groups: &[Group],
+        enclosures: &mut Enclosures,
+        agent: usize,
+        (from, to): (f64, f64),
+        out: &mut SmallVec<[Interval; 8]>,
+    ) {
+        out.clear();
+        let n = agents.agents[agent].states.len();
+        if n == 0 {
+            return;
+        }
+        let number = agents.agents[agent].group;
+        let group = &groups[number];
+        let first = self.kept[agent].first as usize;
+        let (clock, states) = agents.at_clock(agent, group.clock);
+        if group.members.len() == 1 && to <= self.time_end {
+            let known = self.kept[agent];
+            if known.version != group.version || from < known.since {
+                self.bound(agents, agent, clock, &states, from);
+                self.kept[agent] = Kept { version: group.version, first: first as u32, since: from };
+            }
+            let span = Interval { lo: from - clock, hi: to - clock };
+            for (&x, &rate) in states.iter().zip(&self.rates[first..first + n]) {
+                out.push(if rate.is_whole() { rate } else { self.padded(x, span.mul(rate)) });
+            }
+            if out.iter().all(|bound| !bound.is_whole()) {
+                return;
+            }
+        } else {
+            out.resize(n, Interval::WHOLE);
+        }
+        enclosures.states(agents, groups, agent, (from, to), &mut |state, bound| {
+            if out[state].is_whole() {
+                out[state] = bound;
+            }
+        });
+    }
+
+    /// Bounds the rates of an agent that is alone from `since` on, as far as they are bounded whatever its states are.
+    fn bound(&mut self, agents: &Agents<'_>, number: usize, clock: f64, states: &[f64], since: f64) {
+        let first = self.kept[number].first as usize;
+        let agent = &agents.agents[number];
+        let n = agent.states.len();
+        let flow = agents.flow(number);
+        let slots = agents.slots(&flow.frame, &[number]);
+        let kernel = agents.program.kernel(flow.rates);
+        let time = Interval { lo: since, hi: self.time_end };
+        let span = Interval { lo: since - clock, hi: self.time_end - clock };
+        let mut states_box: SmallVec<[Interval; 8]> = SmallVec::from_elem(ANY, n);
+        self.rates[first..first + n].fill(Interval::WHOLE);
+        let mut n_bounded = 0;
+        for _ in 0..PASSES {
+            let boxes: Boxes<'_> = slots
+                .iter()
+                .map(|&other| {
+                    if other == ABSENT {
+                        return AgentBox::absent(&self.absent, &self.absent_aux);
+                    }
+                    let own: &[Interval] = if other == number { &states_box } else { &[] };
+                    AgentBox { states: own, rates: &[], accelerations: &[], aux: &agents.agents[other].aux }
+                })
+                .collect();
+            let rates = &mut self.rates[first..first + n];
+            kernel.range(&boxes, time, &mut self.registers, rates);
+            self.ranges += 1;
+            self.operations += 2 * kernel.operations();
+            for rate in rates.iter_mut().filter(|rate| rate.mag() > BOUND_MAX) {
+                *rate = Interval::WHOLE;
+            }
+            let bounded = rates.iter().filter(|rate| !rate.is_whole()).count();
+            if bounded == n || bounded == n_bounded {
+                return;
+            }
+            n_bounded = bounded;
+            drop(boxes);
+            for (k, bound) in states_box.iter_mut().enumerate() {
+                let rate = self.rates[first + k];
+                if !rate.is_whole() {
+                    *bound = self.padded(states[k], span.mul(rate));
+                }
+            }
+        }
+    }
+
+    /// x + way, with room for what the integration may be off by.
+    fn padded(&self, x: f64, way: Interval) -> Interval {
+        let bound = Interval { lo: x, hi: x }.add(way);
+        let pad = 10.0 * (self.accuracy.absolute + self.accuracy.tolerance * bound.mag());
+        Interval { lo: bound.lo - pad, hi: bound.hi + pad }
+    }
+}
