@@ -6,6 +6,8 @@
 use crate::math::Op;
 use crate::math::elementary;
 
+use super::{Term, WIDTH};
+
 /// Writes an expression in the operands' lanes into every lane. A macro, because a function that takes another one calls it.
 macro_rules! each {
     ($out:ident, $a:ident: $value:expr) => {
@@ -30,6 +32,10 @@ pub(super) enum Work<'a> {
     Select { a: &'a [f64], b: &'a [f64], c: &'a [f64], out: &'a mut [f64] },
     /// Sine and cosine.
     SinCos { a: &'a [f64], sin: &'a mut [f64], cos: &'a mut [f64] },
+    /// `h` times the sum of the terms.
+    Combination { h: &'a [f64], terms: &'a [Term<'a>], out: &'a mut [f64] },
+    /// `x` and `h` times the sum of the terms.
+    Advance { x: &'a [f64], h: &'a [f64], terms: &'a [Term<'a>], out: &'a mut [f64] },
 }
 
 /// Does what is asked for.
@@ -40,6 +46,8 @@ pub(super) fn work(work: Work<'_>) {
         Work::Binary { op, a, b, out } => binary(op, a, b, out),
         Work::Select { a, b, c, out } => select(a, b, c, out),
         Work::SinCos { a, sin, cos } => sin_cos(a, sin, cos),
+        Work::Combination { h, terms, out } => combination(h, terms, |_, change| change, out),
+        Work::Advance { x, h, terms, out } => combination(h, terms, |lane, change| x[lane] + change, out),
     }
 }
 
@@ -155,6 +163,28 @@ fn sin_cos(a: &[f64], sin: &mut [f64], cos: &mut [f64]) {
     redo_huge(a, cos, elementary::cos);
 }
 
+/// `h` times the sum of the terms, [`WIDTH`] lanes after [`WIDTH`] lanes, and what `finish` makes of it.
+#[inline(always)]
+fn combination(h: &[f64], terms: &[Term<'_>], finish: impl Fn(usize, f64) -> f64, out: &mut [f64]) {
+    let (chunks, rest) = out.as_chunks_mut::<WIDTH>();
+    let n_whole = chunks.len() * WIDTH;
+    for (start, out) in (0..n_whole).step_by(WIDTH).zip(chunks) {
+        let mut sum = [0.0; WIDTH];
+        for (place, term) in terms.iter().enumerate() {
+            for (sum, k) in sum.iter_mut().zip(&term.column[start..start + WIDTH]) {
+                *sum = if place == 0 { term.weight * k } else { *sum + term.weight * k };
+            }
+        }
+        for (lane, (out, sum)) in (start..).zip(out.iter_mut().zip(&sum)) {
+            *out = finish(lane, h[lane] * sum);
+        }
+    }
+    for (lane, out) in (n_whole..).zip(rest) {
+        let products = terms.iter().map(|term| term.weight * term.column[lane]);
+        *out = finish(lane, h[lane] * products.reduce(|sum, product| sum + product).unwrap_or(0.0));
+    }
+}
+
 /// Puts the scalar function's result where an angle is huge, infinite or NaN.
 #[inline(always)]
 fn redo_huge(a: &[f64], out: &mut [f64], scalar: fn(f64) -> f64) {
@@ -200,8 +230,8 @@ fn integer_power(a: &[f64], b: &[f64], out: &mut [f64]) {
     if f64::from(exponent) != n || !b.iter().fold(true, |all, &b| all & (b == n)) {
         return lane_by_lane(Op::Powi, a, b, out);
     }
-    let (chunks, rest) = a.as_chunks::<{ super::WIDTH }>();
-    let (out, out_rest) = out.as_chunks_mut::<{ super::WIDTH }>();
+    let (chunks, rest) = a.as_chunks::<WIDTH>();
+    let (out, out_rest) = out.as_chunks_mut::<WIDTH>();
     for (out, a) in out.iter_mut().zip(chunks) {
         *out = power_of_chunk(*a, exponent);
     }

@@ -39,6 +39,18 @@ pub fn sin_cos(a: &[f64], sin: &mut [f64], cos: &mut [f64]) {
     Level::best().sin_cos(a, sin, cos);
 }
 
+/// `h ((w_1 k_1 + w_2 k_2) + ...)` over columns, from left to right; `h` times 0 without terms.
+#[inline]
+pub fn combination(h: &[f64], terms: &[Term<'_>], out: &mut [f64]) {
+    Level::best().combination(h, terms, out);
+}
+
+/// `x + h ((w_1 k_1 + w_2 k_2) + ...)` over columns, in the order of [`combination`].
+#[inline]
+pub fn advance(x: &[f64], h: &[f64], terms: &[Term<'_>], out: &mut [f64]) {
+    Level::best().advance(x, h, terms, out);
+}
+
 impl Level {
     /// [`unary`] with this level's instructions.
     pub fn unary(self, op: Op, a: &[f64], out: &mut [f64]) {
@@ -98,6 +110,33 @@ impl Level {
             cos_rest.copy_from_slice(&last_cos[..cos_rest.len()]);
         }
     }
+
+    /// [`combination`] with this level's instructions.
+    pub fn combination(self, h: &[f64], terms: &[Term<'_>], out: &mut [f64]) {
+        let n = out.len();
+        assert!(
+            h.len() == n && terms.iter().all(|term| term.column.len() == n),
+            "terms of other than {n} lanes"
+        );
+        level::run(self, columns::Work::Combination { h, terms, out });
+    }
+
+    /// [`advance`] with this level's instructions.
+    pub fn advance(self, x: &[f64], h: &[f64], terms: &[Term<'_>], out: &mut [f64]) {
+        let n = out.len();
+        assert!(x.len() == n && h.len() == n, "a step of other than {n} lanes");
+        assert!(terms.iter().all(|term| term.column.len() == n), "terms of other than {n} lanes");
+        level::run(self, columns::Work::Advance { x, h, terms, out });
+    }
+}
+
+/// What a combination adds: a weight and a column.
+#[derive(Clone, Copy, Debug)]
+pub struct Term<'a> {
+    /// The same for all lanes.
+    pub weight: f64,
+    /// What it weighs.
+    pub column: &'a [f64],
 }
 
 /// The largest multiple of [`WIDTH`] that is not above `n`.

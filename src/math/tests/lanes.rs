@@ -2,7 +2,7 @@
 
 use crate::math::Op;
 use crate::math::elementary;
-use crate::math::lanes::{self, Level};
+use crate::math::lanes::{self, Level, Term};
 
 /// A generator of Marsaglia's kind, for inputs only.
 struct Random(u64);
@@ -227,5 +227,32 @@ fn without_a_level_the_best_one_works() {
     lanes::sin_cos(&a, &mut one, &mut two);
     for k in 0..3 {
         assert!(same(one[k], Op::Sin.eval([a[k]; 3])) && same(two[k], Op::Cos.eval([a[k]; 3])));
+    }
+}
+
+#[test]
+fn combinations_are_added_from_left_to_right() {
+    let mut random = Random(17);
+    for n in [1, 7, 8, 32, 45] {
+        let mut column = || (0..n).map(|_| random.unit()).collect::<Vec<f64>>();
+        let (x, h) = (column(), column());
+        let columns: Vec<(f64, Vec<f64>)> = (0..7).map(|k| (0.1 * f64::from(k) - 0.35, column())).collect();
+        for n_terms in 0..=7 {
+            let terms: Vec<Term<'_>> =
+                columns[..n_terms].iter().map(|(weight, column)| Term { weight: *weight, column }).collect();
+            for &level in Level::available() {
+                let (mut change, mut end) = (vec![0.0; n], vec![0.0; n]);
+                level.combination(&h, &terms, &mut change);
+                level.advance(&x, &h, &terms, &mut end);
+                for lane in 0..n {
+                    let mut products =
+                        columns[..n_terms].iter().map(|(weight, column)| weight * column[lane]);
+                    let first = products.next().unwrap_or(0.0);
+                    let expected = h[lane] * products.fold(first, |sum, product| sum + product);
+                    assert!(same(change[lane], expected), "{}: {n_terms} terms", level.name());
+                    assert!(same(end[lane], x[lane] + expected), "{}: {n_terms} terms", level.name());
+                }
+            }
+        }
     }
 }
