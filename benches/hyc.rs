@@ -2,8 +2,9 @@
 //! of wall-clock time: run it on a quiet machine.
 //!
 //! Compiling is from text to machine code. A right-hand side is one evaluation of an agent's flow, by the interpreter and by machine code.
-//! The bumper problem is run to t = 20 s; its steps are all accepted and rejected ones.
+//! The bumper problem is run to t = 20 s; its steps are all accepted and rejected ones. Operators over lanes are timed on 32 lanes.
 
+mod lanes;
 mod problem;
 
 use std::collections::HashMap;
@@ -226,4 +227,5 @@ fn main() {
     compile_times();
     back_ends();
     sizes();
+    lanes::table();
 }

@@ -232,6 +232,22 @@ fn unsafe_code_says_why_it_is_sound() {
 }
 
 #[test]
+fn unsafe_code_stands_only_where_compiled_code_is_called() {
+    let places = ["codegen/jit.rs", "codegen/kernel.rs", "math/lanes/level.rs"];
+    let found: Vec<String> = sources()
+        .into_iter()
+        .filter(|source| {
+            source.text.lines().any(|line| contains_word(line.split("//").next().unwrap(), "unsafe {"))
+        })
+        .map(|source| source.path)
+        .collect();
+    assert_eq!(
+        found, places,
+        "machine code and functions for a CPU's features are called from these files alone"
+    );
+}
+
+#[test]
 fn every_link_in_the_documents_leads_somewhere() {
     let mut documents = files_below(&root().join("docs"), ".md");
     documents.extend(["README.md", "CHANGELOG.md"].map(|name| root().join(name)));

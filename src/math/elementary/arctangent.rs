@@ -20,25 +20,17 @@ const ARCTANGENT: [f64; 12] = [
     0.015207985183216371,
 ];
 
+/// What pi exceeds the nearest number by. The multiples of pi/4 up to 4 are exact products with the nearest number.
 const PI_LOW: f64 = 1.2246467991473532e-16;
 
-/// 0, pi/4, pi/2, 3 pi/4 and pi.
-const EIGHTHS: [Twofold; 5] = [
-    Twofold { hi: 0.0, lo: 0.0 },
-    Twofold { hi: std::f64::consts::FRAC_PI_4, lo: PI_LOW / 4.0 },
-    Twofold { hi: std::f64::consts::FRAC_PI_2, lo: PI_LOW / 2.0 },
-    Twofold { hi: 2.356194490192345, lo: 9.184850993605148e-17 },
-    Twofold { hi: std::f64::consts::PI, lo: PI_LOW },
-];
-
 /// Arc tangent, within 1 unit in the last place.
-#[inline]
+#[inline(always)]
 pub fn atan(x: f64) -> f64 {
     atan2(x, 1.0)
 }
 
 /// The angle of the point (x, y), within 1 unit in the last place; signed zeros and infinities as in C's Annex F.
-#[inline]
+#[inline(always)]
 pub fn atan2(y: f64, x: f64) -> f64 {
     let (height, width) = (y.abs(), x.abs());
     let steep = height > width;
@@ -70,12 +62,13 @@ fn first_half(a: f64, b: f64, steep: bool, backwards: bool) -> f64 {
     let tail = t.lo + t.hi * square * polynomial(square, &ARCTANGENT);
 
     let mirrored = steep != backwards;
-    let from_axis = usize::from(upper);
-    let eighths = 2 * usize::from(steep) + 4 * usize::from(backwards && !steep);
-    let offset = EIGHTHS[if mirrored { eighths - from_axis } else { eighths + from_axis }];
+    let from_axis = if upper { 1.0 } else { 0.0 };
+    let back = if backwards { 4.0 } else { 0.0 };
+    let eighths = if steep { 2.0 } else { back };
+    let eighths = if mirrored { eighths - from_axis } else { eighths + from_axis };
     let sign = if mirrored { -1.0 } else { 1.0 };
-    let main = sum_ordered(offset.hi, sign * t.hi);
-    let value = main.hi + (main.lo + (offset.lo + sign * tail));
+    let main = sum_ordered(eighths * std::f64::consts::FRAC_PI_4, sign * t.hi);
+    let value = main.hi + (main.lo + (eighths * (PI_LOW / 4.0) + sign * tail));
     // A small quotient is the angle itself, and rounds only once even if it is denormal.
     if plain < 1e-10 && !steep && !backwards { plain } else { value }
 }

@@ -1,7 +1,7 @@
 //! Functions with one exact answer (or one fixed order of roundings), and what they do with NaN, -0 and infinity.
 
 /// -1, 0 or 1. Both zeros give +0; NaN gives NaN.
-#[inline]
+#[inline(always)]
 pub fn sign(x: f64) -> f64 {
     if x > 0.0 {
         1.0
@@ -15,7 +15,7 @@ pub fn sign(x: f64) -> f64 {
 }
 
 /// The smaller one; NaN if either is NaN; -0 is smaller than +0.
-#[inline]
+#[inline(always)]
 pub fn minimum(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() {
         f64::NAN
@@ -27,7 +27,7 @@ pub fn minimum(a: f64, b: f64) -> f64 {
 }
 
 /// The larger one; NaN if either is NaN; +0 is larger than -0.
-#[inline]
+#[inline(always)]
 pub fn maximum(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() {
         f64::NAN
@@ -39,7 +39,7 @@ pub fn maximum(a: f64, b: f64) -> f64 {
 }
 
 /// To the nearest integer, halves away from zero. The sign of a zero result is that of `x`.
-#[inline]
+#[inline(always)]
 pub fn round(x: f64) -> f64 {
     x.round()
 }

@@ -10,6 +10,9 @@ pub(super) const LN_2_HIGH: f64 = 0.6931471803691238;
 /// What then remains of ln 2.
 pub(super) const LN_2_LOW: f64 = 1.9082149292705877e-10;
 
+/// What the field of the exponent in a number's bits is above the exponent.
+const BIAS: u64 = 1023;
+
 const EXPONENTIAL: [f64; 11] = [
     0.5,
     0.1666666666666667,
@@ -25,7 +28,7 @@ const EXPONENTIAL: [f64; 11] = [
 ];
 
 /// `e^x`, within 1 unit in the last place, gradual underflow included.
-#[inline]
+#[inline(always)]
 pub fn exp(x: f64) -> f64 {
     exp_twofold(Twofold { hi: x, lo: 0.0 })
 }
@@ -37,19 +40,14 @@ pub(super) fn exp_twofold(x: Twofold) -> f64 {
     let capped = if x.hi > 710.0 { 710.0 } else { x.hi };
     let hi = if capped < -746.0 { -746.0 } else { capped };
     let shifted = hi * std::f64::consts::LOG2_E + ROUNDER;
-    let exponent = shifted.to_bits() as i32;
+    let fields = shifted.to_bits().wrapping_sub(ROUNDER.to_bits()).wrapping_add(2 * BIAS);
     let count = shifted - ROUNDER;
     let lo = if hi == x.hi { x.lo } else { 0.0 };
     let rest = sum(hi - count * LN_2_HIGH, lo - count * LN_2_LOW);
     let tail = rest.hi * rest.hi * polynomial(rest.hi, &EXPONENTIAL);
     let main = sum_ordered(1.0, rest.hi);
     let value = main.hi + (main.lo + (tail + rest.lo * (1.0 + rest.hi)));
-    let first = exponent >> 1;
-    value * power_of_two(first) * power_of_two(exponent.wrapping_sub(first))
-}
-
-/// `2^exponent`, for exponents of normal numbers; anything for others.
-#[inline(always)]
-fn power_of_two(exponent: i32) -> f64 {
-    f64::from_bits((exponent.wrapping_add(1023) as u64) << 52)
+    // The exponent in two halves, each with its bias: `fields` is their sum, and not negative.
+    let first = fields >> 1;
+    value * f64::from_bits(first << 52) * f64::from_bits(fields.wrapping_sub(first) << 52)
 }

@@ -3,6 +3,7 @@
 //! The coefficients are a minimax fit (Remez) of `(2 atanh(s)/s - 2)/s^2` in `s^2`, for m in [sqrt(1/2), sqrt(2)].
 
 use super::exponential::{LN_2_HIGH, LN_2_LOW};
+use super::quadrant::ROUNDER;
 use super::twofold::{polynomial, sum_ordered};
 
 const LOGARITHM: [f64; 7] = [
@@ -16,7 +17,7 @@ const LOGARITHM: [f64; 7] = [
 ];
 
 /// The natural logarithm, within 1 unit in the last place; -inf at both zeros, NaN below.
-#[inline]
+#[inline(always)]
 pub fn log(x: f64) -> f64 {
     let Scaled { exponent, mantissa } = scaled(x);
     // log(1 + f) = f - (f^2/2 - s (f^2/2 + R(s^2))) with s = f/(2 + f), so that f itself is not rounded.
@@ -47,9 +48,10 @@ pub(super) fn scaled(x: f64) -> Scaled {
     const TWO_TO_54: f64 = 18_014_398_509_481_984.0;
     let denormal = x < f64::MIN_POSITIVE;
     let bits = (if denormal { x * TWO_TO_54 } else { x }).to_bits();
-    let above = bits.wrapping_sub(std::f64::consts::FRAC_1_SQRT_2.to_bits());
-    let exponent = (above as i64 >> 52) as i32;
-    let mantissa = f64::from_bits(bits.wrapping_sub((exponent as u64) << 52));
-    let shift = if denormal { 54.0 } else { 0.0 };
-    Scaled { exponent: f64::from(exponent) - shift, mantissa }
+    // The exponent and 1024, which is not negative: a shift without a sign is a shift of lanes on every CPU.
+    let above = bits.wrapping_sub(std::f64::consts::FRAC_1_SQRT_2.to_bits()).wrapping_add(1024 << 52);
+    let raised = above >> 52;
+    let mantissa = f64::from_bits(bits.wrapping_sub(raised << 52).wrapping_add(1024 << 52));
+    let zero = ROUNDER + if denormal { 1024.0 + 54.0 } else { 1024.0 };
+    Scaled { exponent: f64::from_bits(ROUNDER.to_bits() + raised) - zero, mantissa }
 }

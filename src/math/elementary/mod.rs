@@ -25,3 +25,6 @@ pub use logarithm::log;
 pub use power::pow;
 pub use root::{cbrt, hypot};
 pub use sincos::{cos, sin, sin_cos};
+
+pub(super) use quadrant::is_moderate;
+pub(super) use sincos::{cos_moderate, sin_cos_moderate, sin_moderate};

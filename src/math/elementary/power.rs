@@ -25,7 +25,7 @@ const TAIL: [f64; 8] = [
 ///
 /// `x^0` and `1^y` are 1 even for NaN; a negative `x` needs an integer `y` or gives NaN; -0 and -inf keep their sign
 /// for odd `y`.
-#[inline]
+#[inline(always)]
 pub fn pow(x: f64, y: f64) -> f64 {
     // Larger exponents give 0, 1 or infinity as well, and would overflow on the way.
     const Y_MAX: f64 = 1e20;

@@ -9,7 +9,7 @@ use super::twofold::{Twofold, product, sum, sum_ordered};
 /// An angle as `quadrant * pi/2 + (hi + lo)`, |hi| at most pi/4 or barely more; only the quadrant's last two bits count.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Angle {
-    pub quadrant: i32,
+    pub quadrant: u64,
     pub hi: f64,
     pub lo: f64,
 }
@@ -32,14 +32,20 @@ const PART_4: f64 = 8.4784276603689e-32;
 /// The reduced angle; NaN parts for NaN and infinity.
 #[inline(always)]
 pub(super) fn reduce(x: f64) -> Angle {
-    if x.abs() <= LIMIT { reduce_moderate(x) } else { reduce_huge(x) }
+    if is_moderate(x) { reduce_moderate(x) } else { reduce_huge(x) }
 }
 
-/// Cody and Waite's reduction for |x| <= [`LIMIT`].
+/// Whether [`reduce_moderate`] is right for `x`.
 #[inline(always)]
-fn reduce_moderate(x: f64) -> Angle {
+pub(in crate::math) fn is_moderate(x: f64) -> bool {
+    x.abs() <= LIMIT
+}
+
+/// Cody and Waite's reduction for |x| <= [`LIMIT`]; anything for others.
+#[inline(always)]
+pub(super) fn reduce_moderate(x: f64) -> Angle {
     let shifted = x * std::f64::consts::FRAC_2_PI + ROUNDER;
-    let quadrant = shifted.to_bits() as i32;
+    let quadrant = shifted.to_bits();
     let count = shifted - ROUNDER;
     let first = x - count * PART_1;
     let second = sum(first, -(count * PART_2));
@@ -103,8 +109,8 @@ fn reduce_huge(x: f64) -> Angle {
     let main = product(hi * unit, half_pi.hi);
     let all = sum_ordered(main.hi, main.lo + (hi * unit * half_pi.lo + lo * unit * half_pi.hi));
     if x < 0.0 {
-        Angle { quadrant: -quadrant, hi: -all.hi, lo: -all.lo }
+        Angle { quadrant: -quadrant as u64, hi: -all.hi, lo: -all.lo }
     } else {
-        Angle { quadrant, hi: all.hi, lo: all.lo }
+        Angle { quadrant: quadrant as u64, hi: all.hi, lo: all.lo }
     }
 }

@@ -8,7 +8,7 @@ const SCALE: f64 = 4.149515568880993e180; // 2^600
 const SCALE_ROOT: f64 = 1.6069380442589903e60; // 2^200
 
 /// Cube root, within 1 unit in the last place; odd, with ±0 and ±inf as they are.
-#[inline]
+#[inline(always)]
 pub fn cbrt(x: f64) -> f64 {
     /// 2/3 of the bits of 1, less what makes the worst error of the first guess smallest.
     const GUESS: u64 = 0x2a9f_7893_0000_0000;
@@ -37,7 +37,7 @@ fn halley(root: f64, x: f64) -> f64 {
 }
 
 /// `sqrt(a^2 + b^2)` within 1 unit in the last place; infinite if either is, even if the other is NaN.
-#[inline]
+#[inline(always)]
 pub fn hypot(a: f64, b: f64) -> f64 {
     let (a, b) = (a.abs(), b.abs());
     let longer = if a < b { b } else { a };

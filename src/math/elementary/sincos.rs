@@ -2,7 +2,7 @@
 //!
 //! The coefficients are minimax fits (Remez) of `(sin(r)/r - 1)/r^2` and `(cos(r) - 1 + r^2/2)/r^4` in `r^2`.
 
-use super::quadrant::{Angle, reduce};
+use super::quadrant::{Angle, reduce, reduce_moderate};
 use super::twofold::{polynomial, product};
 
 const SINE: [f64; 6] = [
@@ -45,34 +45,60 @@ fn cosine_kernel(angle: Angle) -> f64 {
 /// Sine, within 1 unit in the last place for every finite `x`; NaN for infinity.
 #[inline]
 pub fn sin(x: f64) -> f64 {
-    let angle = reduce(x);
-    let value = in_quadrant(angle.quadrant, sine_kernel(angle), cosine_kernel(angle));
-    if x.abs() < TINY { x } else { value }
+    sine(x, reduce(x))
 }
 
 /// Cosine, within 1 unit in the last place for every finite `x`; NaN for infinity.
 #[inline]
 pub fn cos(x: f64) -> f64 {
-    let angle = reduce(x);
-    in_quadrant(angle.quadrant.wrapping_add(1), sine_kernel(angle), cosine_kernel(angle))
+    cosine(reduce(x))
 }
 
 /// Both for little more than the price of one: the bits of [`sin`] and of [`cos`].
 #[inline]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     let angle = reduce(x);
-    let (sine, cosine) = (sine_kernel(angle), cosine_kernel(angle));
-    let value = in_quadrant(angle.quadrant, sine, cosine);
-    let sine_of_x = if x.abs() < TINY { x } else { value };
-    (sine_of_x, in_quadrant(angle.quadrant.wrapping_add(1), sine, cosine))
+    (sine(x, angle), cosine(angle))
+}
+
+/// [`sin`] without a branch, where the angle is moderate; anything for others.
+#[inline(always)]
+pub(in crate::math) fn sin_moderate(x: f64) -> f64 {
+    sine(x, reduce_moderate(x))
+}
+
+/// [`cos`] without a branch, where the angle is moderate; anything for others.
+#[inline(always)]
+pub(in crate::math) fn cos_moderate(x: f64) -> f64 {
+    cosine(reduce_moderate(x))
+}
+
+/// [`sin_cos`] without a branch, where the angle is moderate; anything for others.
+#[inline(always)]
+pub(in crate::math) fn sin_cos_moderate(x: f64) -> (f64, f64) {
+    let angle = reduce_moderate(x);
+    (sine(x, angle), cosine(angle))
 }
 
 /// Below this `sin(x)` rounds to `x`; -0 stays -0.
 const TINY: f64 = 1.0 / 134_217_728.0;
 
+/// The sine of `x`, which is this angle.
+#[inline(always)]
+fn sine(x: f64, angle: Angle) -> f64 {
+    let value = in_quadrant(angle.quadrant, sine_kernel(angle), cosine_kernel(angle));
+    if x.abs() < TINY { x } else { value }
+}
+
+/// The cosine of this angle.
+#[inline(always)]
+fn cosine(angle: Angle) -> f64 {
+    in_quadrant(angle.quadrant.wrapping_add(1), sine_kernel(angle), cosine_kernel(angle))
+}
+
 /// The sine of an angle in a quadrant from the sine and cosine of what exceeds the quadrant's start.
 #[inline(always)]
-fn in_quadrant(quadrant: i32, sine: f64, cosine: f64) -> f64 {
+fn in_quadrant(quadrant: u64, sine: f64, cosine: f64) -> f64 {
     let size = if quadrant & 1 == 0 { sine } else { cosine };
-    if quadrant & 2 == 0 { size } else { -size }
+    f64::from_bits(size.to_bits() ^ (quadrant & 2) << 62)
 }

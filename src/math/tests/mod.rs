@@ -2,5 +2,6 @@
 
 mod elementary;
 mod op;
+mod lanes;
 mod interval;
 mod draw;
