@@ -290,6 +290,7 @@ impl Engine<'_, '_> {
         if written.restarted.contains(&agent) {
             return;
         }
+        self.thaw(agent);
         let number = self.agents.agents[agent].group;
         let time = self.present.time;
         let group = &mut self.groups.groups[number];

@@ -1,4 +1,6 @@
 //! Certification (I2, I3, I6): each comparison is known not to change up to a time, or known to change at one.
+use smallvec::SmallVec;
+
 use crate::codegen::program::Atom;
 use crate::runtime::detect::AtomCurve;
 use crate::runtime::engine::{Due, Engine};
@@ -30,6 +32,10 @@ impl Engine<'_, '_> {
             if self.guards.atoms[due.number as usize].version == due.version {
                 self.certify(due.number as usize, false);
             }
+            if self.has_thawed {
+                // The cover may have shrunk.
+                return;
+            }
         }
     }
 
@@ -56,6 +62,17 @@ impl Engine<'_, '_> {
         let folds = self.truths().gather(self.guards.atoms[index].instance, kernel, &slots, Side::After);
         let mut to = self.time_end;
         let read = atom.slots.iter().map(|&slot| slots[slot]).filter(|&agent| agent != ABSENT);
+        let cold = read.clone().chain(fold::members(&folds)).filter(|&agent| self.agents.cold.is_cold(agent));
+        let cold: SmallVec<[usize; 4]> = cold.collect();
+        if !cold.is_empty() {
+            return match self.sleep_beyond(index, self.window_end) {
+                Some(until) => self.certified(index, until),
+                None => {
+                    self.recertify(index, from);
+                    cold.into_iter().for_each(|agent| self.thaw(agent));
+                }
+            };
+        }
         for agent in read.chain(fold::members(&folds)) {
             to = to.min(self.groups.groups[self.agents.agents[agent].group].clock);
         }
@@ -111,7 +128,7 @@ impl Engine<'_, '_> {
     }
 
     /// Notes that an atom does not change before `until`.
-    fn certified(&mut self, index: usize, until: f64) {
+    pub fn certified(&mut self, index: usize, until: f64) {
         let state = &mut self.guards.atoms[index];
         if until > state.certified {
             state.slack = 0.0;

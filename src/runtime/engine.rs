@@ -94,6 +94,12 @@ pub struct Engine<'p, 'o> {
     pub reaches: Reaches,
     /// The near pairs; none in the plain form.
     pub neighbours: Neighbours,
+    /// The agents that could be cold and are not.
+    pub hot: Vec<usize>,
+    /// The end of the window of time at hand, s.
+    pub window_end: f64,
+    /// Whether an agent has been brought back since this was last asked.
+    pub has_thawed: bool,
     /// What is due when.
     pub queues: Queues,
     /// Makes rows of trajectories.
@@ -162,6 +168,9 @@ impl<'p, 'o> Engine<'p, 'o> {
             enclosures: Enclosures::new(&agents, accuracy),
             reaches: Reaches::new(&agents, accuracy, time_end),
             neighbours: Neighbours::default(),
+            hot: Vec::new(),
+            window_end: f64::INFINITY,
+            has_thawed: false,
             recorder: Recorder::new(program, time_end),
             repetitions: Repetitions::new(limits),
             groups: Groups::default(),

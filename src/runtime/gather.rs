@@ -36,7 +36,7 @@ impl Engine<'_, '_> {
         let window = first + time_resolution(first);
         let cover = self.cover().min(self.time_end);
         self.certify_up_to(window.min(cover));
-        if self.interrupted() {
+        if self.interrupted() || self.has_thawed {
             // Something earlier may not have been found yet.
             return Ok(());
         }

@@ -50,6 +50,9 @@ impl Engine<'_, '_> {
                 self.present.go(cover.max(self.present.time));
                 return Ok(Some(End::Interrupted));
             }
+            if std::mem::take(&mut self.has_thawed) {
+                continue;
+            }
             let cause = self.next_cause();
             let sample = self.recorder.next();
             if sample < cause && sample <= cover {

@@ -6,6 +6,7 @@
 use smallvec::SmallVec;
 
 use crate::codegen::program::{Flow, Frame, Layout, ModeSystem, Program, Slot};
+use crate::runtime::cold::Cold;
 use crate::runtime::solve::segment::Segment;
 
 /// No agent: what a slot holds whose link is `none`.
@@ -39,6 +40,8 @@ pub struct Agents<'p> {
     pub program: &'p Program,
     /// By number.
     pub agents: Vec<Agent>,
+    /// Who runs ahead.
+    pub cold: Cold<'p>,
     /// The numbers of the agents of each type, rising.
     pub of_type: Vec<Vec<usize>>,
     /// For each agent, those that have a link to it.
@@ -88,13 +91,22 @@ impl<'p> Agents<'p> {
             linked_from,
             chain_max: longest_chain(program),
             flow_inputs: flow_inputs(program),
+            cold: Cold::default(),
             absent: vec![f64::NAN; row_width(program)],
         }
     }
 
     /// The states of an agent at `t`, which is not before what is kept of its way.
-    pub fn states_at(&self, agent: usize, t: f64, states: &mut [f64]) {
-        let agent = &self.agents[agent];
+    pub fn states_at(&self, number: usize, t: f64, states: &mut [f64]) {
+        let agent = &self.agents[number];
+        if self.cold.is_cold(number) && self.cold.knows(number, t) {
+            let mut segment = Segment::default();
+            self.cold.follow(number, t, states, &mut segment);
+            if segment.end != t {
+                segment.states(t, states);
+            }
+            return;
+        }
         if agent.segment.end == t {
             states.copy_from_slice(&agent.states);
         } else {
@@ -104,6 +116,9 @@ impl<'p> Agents<'p> {
 
     /// How far an agent has come, and its states there; `clock` is that of its group.
     pub fn at_clock(&self, agent: usize, clock: f64) -> (f64, SmallVec<[f64; 8]>) {
+        if self.cold.is_cold(agent) {
+            return self.cold.now(agent);
+        }
         (clock, self.agents[agent].states.as_slice().into())
     }
 

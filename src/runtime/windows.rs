@@ -1,25 +1,56 @@
 //! Algorithm `masim`, fast form: the plain form in windows of time, with lists of near pairs.
 //!
-//! Between two windows the pairs are listed that can come within range in the next ([`crate::runtime::near_pairs`]).
+//! At the begin of a window the pairs are listed that can come within range for some time
+//! ([`crate::runtime::near_pairs`]), and those agents run ahead that no guard can concern in the window
+//! ([`crate::runtime::hot`]). A window cuts no step: its length changes no bit of any.
 
+use crate::runtime::cold::Cold;
 use crate::runtime::engine::Engine;
-use crate::runtime::failure::Failure;
+use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::observe::End;
 
 /// As many pairs are listed for an agent as balance, about, what listing and what looking at pairs costs.
 const PAIRS_WANTED: f64 = 0.5;
 /// The first list is for this share of the run.
-const FIRST_SHARE: f64 = 1.0 / 32.0;
-/// The most by which the time of a list grows or shrinks from one to the next.
+const FIRST_LIST: f64 = 1.0 / 32.0;
+/// The first window is this share of the run.
+const FIRST_WINDOW: f64 = 1.0 / 256.0;
+/// No window is a smaller share of the run.
+const SHORTEST: f64 = 1e-6;
+/// The most by which the time of a list, or of a window, grows or shrinks from one to the next.
 const GROW: f64 = 2.0;
+/// The share of agents that are hot at which a window is long enough.
+const HOT_WANTED: f64 = 0.02;
+/// A window in which agents take more steps than this is long enough, too.
+const STEPS_WANTED: f64 = 8.0;
 
 impl Engine<'_, '_> {
     /// Runs to the end.
     pub fn run_in_windows(&mut self) -> Result<End, Failure> {
         self.make_fields();
+        self.make_herds();
         self.begin()?;
+        let mut length = FIRST_WINDOW * self.horizon();
         loop {
-            let until = if self.has_fields() { self.neighbours.until.min(self.time_end) } else { self.time_end };
+            let from = self.present.time;
+            if self.has_fields() && self.neighbours.until <= from {
+                let span = self.next_span();
+                for instance in self.list_pairs(from + span)? {
+                    self.meet(instance);
+                }
+            }
+            let mut until = self.time_end;
+            if self.has_fields() {
+                until = until.min(self.neighbours.until);
+            }
+            if self.agents.cold.is_used() {
+                until = until.min(from + length);
+                self.window_end = until;
+                let before = self.stepper.counts.steps;
+                let n_hot = self.open_window(until);
+                length = (length * self.growth(n_hot, before)).max(SHORTEST * self.horizon());
+                self.mind_steps()?;
+            }
             if let Some(end) = self.run_until(until)? {
                 return Ok(end);
             }
@@ -27,18 +58,48 @@ impl Engine<'_, '_> {
                 return self.finish();
             }
             self.present.go(until);
-            let span = self.next_span();
-            for instance in self.list_pairs(until + span)? {
-                self.meet(instance);
-            }
         }
+    }
+
+    /// Herds for those who may be cold; none if every step is recorded.
+    fn make_herds(&mut self) {
+        if self.recorder.wants_steps() || !self.stepper.goes_by_series() {
+            return;
+        }
+        let accuracy = self.stepper.accuracy();
+        self.agents.cold = Cold::new(self.program, self.agents.len(), accuracy, self.time_end);
+        if self.agents.cold.is_used() {
+            self.hot = (0..self.agents.len()).collect();
+        }
+    }
+
+    /// The time that the first list and the first window are shares of, s.
+    fn horizon(&self) -> f64 {
+        if self.time_end.is_finite() { self.time_end } else { 100.0 }
+    }
+
+    /// By how much the next window is to be longer than this one, in which the cold agents have taken their steps.
+    fn growth(&self, n_hot: usize, steps_before: u64) -> f64 {
+        let n = self.agents.len() as f64;
+        let steps = (self.stepper.counts.steps - steps_before) as f64 / n;
+        let hot = n_hot as f64 / n;
+        (HOT_WANTED / hot).min(STEPS_WANTED / steps).sqrt().clamp(1.0 / GROW, GROW)
+    }
+
+    /// Fails if the limit of steps has been passed.
+    fn mind_steps(&mut self) -> Result<(), Failure> {
+        let counts = &self.stepper.counts;
+        if counts.steps + counts.rejected <= self.limits.steps_max {
+            return Ok(());
+        }
+        let place = self.place(0);
+        Err(Reason::StepLimit { place, limit: self.limits.steps_max }.into())
     }
 
     /// Makes the first lists, if there is anything to list; the instances are not armed.
     pub fn begin_lists(&mut self) -> Result<(), Failure> {
         if self.has_fields() {
-            let end = if self.time_end.is_finite() { self.time_end } else { 1.0 / FIRST_SHARE };
-            self.neighbours.span = FIRST_SHARE * end;
+            self.neighbours.span = FIRST_LIST * self.horizon();
             self.list_pairs(self.neighbours.span)?;
         }
         Ok(())

@@ -6,6 +6,7 @@
 use crate::math::Op;
 use crate::math::elementary;
 
+use super::level::Work;
 use super::{Term, WIDTH};
 
 /// Writes an expression in the operands' lanes into every lane. A macro, because a function that takes another one calls it.
@@ -23,7 +24,7 @@ macro_rules! each {
 }
 
 /// What a level is asked for; all slices of one call have the same length.
-pub(super) enum Work<'a> {
+pub(super) enum Task<'a> {
     /// An operator of one operand.
     Unary { op: Op, a: &'a [f64], out: &'a mut [f64] },
     /// An operator of two operands.
@@ -38,16 +39,17 @@ pub(super) enum Work<'a> {
     Advance { x: &'a [f64], h: &'a [f64], terms: &'a [Term<'a>], out: &'a mut [f64] },
 }
 
-/// Does what is asked for.
-#[inline(always)]
-pub(super) fn work(work: Work<'_>) {
-    match work {
-        Work::Unary { op, a, out } => unary(op, a, out),
-        Work::Binary { op, a, b, out } => binary(op, a, b, out),
-        Work::Select { a, b, c, out } => select(a, b, c, out),
-        Work::SinCos { a, sin, cos } => sin_cos(a, sin, cos),
-        Work::Combination { h, terms, out } => combination(h, terms, |_, change| change, out),
-        Work::Advance { x, h, terms, out } => combination(h, terms, |lane, change| x[lane] + change, out),
+impl Work for Task<'_> {
+    #[inline(always)]
+    fn work(self) {
+        match self {
+            Task::Unary { op, a, out } => unary(op, a, out),
+            Task::Binary { op, a, b, out } => binary(op, a, b, out),
+            Task::Select { a, b, c, out } => select(a, b, c, out),
+            Task::SinCos { a, sin, cos } => sin_cos(a, sin, cos),
+            Task::Combination { h, terms, out } => combination(h, terms, |_, change| change, out),
+            Task::Advance { x, h, terms, out } => combination(h, terms, |lane, change| x[lane] + change, out),
+        }
     }
 }
 

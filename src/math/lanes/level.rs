@@ -1,11 +1,10 @@
 //! Which instructions a loop is compiled for, and the choice among them by what the CPU has.
 //!
-//! A level exists only where the CPU has its instructions: that is why [`run`] may call what is compiled for them.
+//! A level exists only where the CPU has its instructions: that is why [`Level::run`] may call what is compiled for them.
 //! On other processors than x86-64 there is the baseline alone, which on AArch64 has NEON's lanes.
 
 use std::sync::OnceLock;
 
-use super::columns::{self, Work};
 
 /// A set of instructions that this CPU has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,32 +66,36 @@ impl Level {
     }
 }
 
-/// Does the work with the instructions of a level.
-#[inline]
-pub(super) fn run(level: Level, work: Work<'_>) {
-    match level.0 {
-        Set::Baseline => with_baseline(work),
-        // SAFETY: this level exists only where the CPU has AVX2.
-        #[cfg(target_arch = "x86_64")]
-        Set::Avx2 => unsafe { with_avx2(work) },
-        // SAFETY: this level exists only where the CPU has AVX-512F, -DQ and -VL.
-        #[cfg(target_arch = "x86_64")]
-        Set::Avx512 => unsafe { with_avx512(work) },
-    }
+/// A loop over lanes that is compiled for each level.
+pub trait Work {
+    /// Does it; to be `#[inline(always)]`, with all that it calls, or it is compiled for the baseline.
+    fn work(self);
 }
 
-fn with_baseline(work: Work<'_>) {
-    columns::work(work);
+impl Level {
+    /// Does the work with this level's instructions.
+    #[inline]
+    pub fn run(self, work: impl Work) {
+        match self.0 {
+            Set::Baseline => work.work(),
+            // SAFETY: this level exists only where the CPU has AVX2.
+            #[cfg(target_arch = "x86_64")]
+            Set::Avx2 => unsafe { with_avx2(work) },
+            // SAFETY: this level exists only where the CPU has AVX-512F, -DQ and -VL.
+            #[cfg(target_arch = "x86_64")]
+            Set::Avx512 => unsafe { with_avx512(work) },
+        }
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn with_avx2(work: Work<'_>) {
-    columns::work(work);
+fn with_avx2(work: impl Work) {
+    work.work();
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl")]
-fn with_avx512(work: Work<'_>) {
-    columns::work(work);
+fn with_avx512(work: impl Work) {
+    work.work();
 }

@@ -5,10 +5,10 @@
 //! Promised: the same bits at every level and those of [`Op::eval`] (up to a NaN's sign and payload). The source is the
 //! scalar functions' own, of operations that IEEE 754 rounds correctly in lanes as well, and nothing is contracted.
 
-mod columns;
 mod level;
+mod columns;
 
-pub use level::Level;
+pub use level::{Level, Work};
 
 use super::Op;
 
@@ -57,10 +57,10 @@ impl Level {
         assert!(op.arity() == 1 && a.len() == out.len(), "{op:?} of {} lanes into {}", a.len(), out.len());
         let (a, a_rest) = a.split_at(whole(a.len()));
         let (out, out_rest) = out.split_at_mut(a.len());
-        level::run(self, columns::Work::Unary { op, a, out });
+        self.run(columns::Task::Unary { op, a, out });
         if !a_rest.is_empty() {
             let mut last = [0.0; WIDTH];
-            level::run(self, columns::Work::Unary { op, a: &filled(a_rest), out: &mut last });
+            self.run(columns::Task::Unary { op, a: &filled(a_rest), out: &mut last });
             out_rest.copy_from_slice(&last[..out_rest.len()]);
         }
     }
@@ -75,11 +75,11 @@ impl Level {
         let (a, a_rest) = a.split_at(whole(a.len()));
         let (b, b_rest) = b.split_at(a.len());
         let (out, out_rest) = out.split_at_mut(a.len());
-        level::run(self, columns::Work::Binary { op, a, b, out });
+        self.run(columns::Task::Binary { op, a, b, out });
         if !a_rest.is_empty() {
             let mut last = [0.0; WIDTH];
             let (a, b) = (&filled(a_rest), &filled(b_rest));
-            level::run(self, columns::Work::Binary { op, a, b, out: &mut last });
+            self.run(columns::Task::Binary { op, a, b, out: &mut last });
             out_rest.copy_from_slice(&last[..out_rest.len()]);
         }
     }
@@ -88,7 +88,7 @@ impl Level {
     pub fn select(self, a: &[f64], b: &[f64], c: &[f64], out: &mut [f64]) {
         let n = out.len();
         assert!(a.len() == n && b.len() == n && c.len() == n, "a choice of other than {n} lanes");
-        level::run(self, columns::Work::Select { a, b, c, out });
+        self.run(columns::Task::Select { a, b, c, out });
     }
 
     /// [`sin_cos`] with this level's instructions.
@@ -101,11 +101,11 @@ impl Level {
         let (a, a_rest) = a.split_at(whole(a.len()));
         let (sin, sin_rest) = sin.split_at_mut(a.len());
         let (cos, cos_rest) = cos.split_at_mut(a.len());
-        level::run(self, columns::Work::SinCos { a, sin, cos });
+        self.run(columns::Task::SinCos { a, sin, cos });
         if !a_rest.is_empty() {
             let (mut last_sin, mut last_cos) = ([0.0; WIDTH], [0.0; WIDTH]);
             let (sin, cos) = (&mut last_sin, &mut last_cos);
-            level::run(self, columns::Work::SinCos { a: &filled(a_rest), sin, cos });
+            self.run(columns::Task::SinCos { a: &filled(a_rest), sin, cos });
             sin_rest.copy_from_slice(&last_sin[..sin_rest.len()]);
             cos_rest.copy_from_slice(&last_cos[..cos_rest.len()]);
         }
@@ -118,7 +118,7 @@ impl Level {
             h.len() == n && terms.iter().all(|term| term.column.len() == n),
             "terms of other than {n} lanes"
         );
-        level::run(self, columns::Work::Combination { h, terms, out });
+        self.run(columns::Task::Combination { h, terms, out });
     }
 
     /// [`advance`] with this level's instructions.
@@ -126,7 +126,7 @@ impl Level {
         let n = out.len();
         assert!(x.len() == n && h.len() == n, "a step of other than {n} lanes");
         assert!(terms.iter().all(|term| term.column.len() == n), "terms of other than {n} lanes");
-        level::run(self, columns::Work::Advance { x, h, terms, out });
+        self.run(columns::Task::Advance { x, h, terms, out });
     }
 }
 

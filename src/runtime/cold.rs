@@ -1,0 +1,165 @@
+//! Who is cold: which agents run ahead in herds, and where they were at a time.
+
+use smallvec::SmallVec;
+
+use crate::codegen::program::{Flow, Program, Slot};
+use crate::runtime::herd::{Advanced, Herd};
+use crate::runtime::solve::control::Accuracy;
+use crate::runtime::solve::leap::{Leaps, STATES_MAX};
+use crate::runtime::solve::segment::Segment;
+use crate::runtime::solve::series_step;
+
+/// A place in a herd.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Place {
+    /// Which herd; [`NONE`] if it is in none.
+    herd: u32,
+    /// The place in it.
+    place: u32,
+    /// Whether it runs ahead now.
+    cold: bool,
+}
+
+const NONE: u32 = u32::MAX;
+
+/// The herds, and who is where.
+#[derive(Clone, Debug, Default)]
+pub struct Cold<'p> {
+    /// One for each type and mode whose agents can be cold.
+    herds: Vec<Herd<'p>>,
+    /// For each type and mode, its herd.
+    of_mode: Vec<Vec<Option<u32>>>,
+    /// By agent; empty if nobody is ever cold.
+    places: Vec<Place>,
+}
+
+impl<'p> Cold<'p> {
+    /// Herds for `n_agents`, all of which are not cold.
+    pub fn new(program: &'p Program, n_agents: usize, accuracy: Accuracy, stop: f64) -> Self {
+        let mut herds = Vec::new();
+        let order = series_step::order(accuracy.tolerance);
+        let mut herd_of = |ty: usize, mode: usize| {
+            let flow = program.types[ty].modes[mode].flow.as_ref()?;
+            let tape = program.series[ty][mode].as_ref()?;
+            let inputs = program.kernel(flow.rates).reads().columns.iter();
+            if !is_alone(flow) || tape.n_states > STATES_MAX || tape.n_states == 0 {
+                return None;
+            }
+            let leaps = Leaps { tape, order, accuracy, stop };
+            herds.push(Herd::new(leaps, inputs.map(|&(_, column)| column).collect()));
+            Some(herds.len() as u32 - 1)
+        };
+        let modes = |ty: usize| 0..program.types[ty].modes.len();
+        let of_mode: Vec<Vec<Option<u32>>> = (0..program.types.len())
+            .map(|ty| modes(ty).map(|mode| herd_of(ty, mode)).collect())
+            .collect();
+        let nowhere = Place { herd: NONE, place: 0, cold: false };
+        let places = if herds.is_empty() { Vec::new() } else { vec![nowhere; n_agents] };
+        Self { herds, of_mode, places }
+    }
+
+    /// Whether anybody can be cold.
+    pub fn is_used(&self) -> bool {
+        !self.herds.is_empty()
+    }
+
+    /// Whether agents of a type can be cold in a mode.
+    pub fn may_be(&self, ty: usize, mode: usize) -> bool {
+        self.is_used() && self.of_mode[ty][mode].is_some()
+    }
+
+    /// Whether an agent is cold.
+    #[inline]
+    pub fn is_cold(&self, agent: usize) -> bool {
+        self.places.get(agent).is_some_and(|place| place.cold)
+    }
+
+    /// The herd of a cold agent, and its place there.
+    fn find(&self, agent: usize) -> (&Herd<'p>, usize) {
+        let Place { herd, place, .. } = self.places[agent];
+        (&self.herds[herd as usize], place as usize)
+    }
+
+    /// How far a cold agent has come, and its states there.
+    pub fn now(&self, agent: usize) -> (f64, SmallVec<[f64; 8]>) {
+        let (herd, place) = self.find(agent);
+        let (t, states) = herd.now(place);
+        (t, states.into())
+    }
+
+    /// Whether the way of a cold agent at `t` is followed in its herd; before, it is on its last segment.
+    pub fn knows(&self, agent: usize, t: f64) -> bool {
+        let (herd, place) = self.find(agent);
+        t >= herd.known(place).0
+    }
+
+    /// The step of a cold agent that covers `t`, and its states at the end of that.
+    pub fn follow(&self, agent: usize, t: f64, states: &mut [f64], segment: &mut Segment) {
+        let (herd, place) = self.find(agent);
+        herd.follow(place, t, states, segment);
+    }
+
+    /// The time and the states from which the way of a cold agent is followed.
+    pub fn known(&self, agent: usize) -> (f64, SmallVec<[f64; 8]>) {
+        let (herd, place) = self.find(agent);
+        let (t, states) = herd.known(place);
+        (t, states.into())
+    }
+
+    /// Has an agent, which may be cold in its mode, run ahead from `(t, states)`.
+    pub fn freeze(&mut self, agent: usize, ty: usize, mode: usize, (t, states): (f64, &[f64]), aux: &[f64]) {
+        let Some(herd) = self.of_mode[ty][mode] else { return };
+        if self.places[agent].herd != herd {
+            self.leave(agent);
+            let place = self.herds[herd as usize].push(agent) as u32;
+            self.places[agent] = Place { herd, place, cold: false };
+        }
+        let place = &mut self.places[agent];
+        place.cold = true;
+        self.herds[herd as usize].start(place.place as usize, t, states, aux);
+    }
+
+    /// Has an agent run ahead no more; it keeps its place.
+    pub fn thaw(&mut self, agent: usize) {
+        let place = &mut self.places[agent];
+        place.cold = false;
+        self.herds[place.herd as usize].halt(place.place as usize);
+    }
+
+    /// Takes an agent out of its herd, if it is in one.
+    fn leave(&mut self, agent: usize) {
+        let Place { herd, place, .. } = self.places[agent];
+        if herd == NONE {
+            return;
+        }
+        if let Some(moved) = self.herds[herd as usize].remove(place as usize) {
+            self.places[moved].place = place;
+        }
+        self.places[agent].herd = NONE;
+    }
+
+    /// The agent type of a herd; right-hand sides and arithmetic operations that one of its steps takes.
+    pub fn cost(&self, herd: usize) -> (usize, u64, u64) {
+        let leaps = &self.herds[herd].leaps;
+        let is_of = |ty: &usize| self.of_mode[*ty].contains(&Some(herd as u32));
+        let ty = (0..self.of_mode.len()).find(is_of).unwrap_or(0);
+        (ty, leaps.order as u64 + 1, leaps.tape.operations(leaps.order) + leaps.tape.operations(1))
+    }
+
+    /// Advances all cold agents to `until` or beyond; those that could go no further are told. Their ways stay known from
+    /// `from` on.
+    pub fn advance(&mut self, from: f64, until: f64, tell: &mut dyn FnMut(usize)) -> Vec<u64> {
+        let mut steps = Vec::with_capacity(self.herds.len());
+        for herd in &mut self.herds {
+            let Advanced { steps: taken, refused } = herd.advance(from, until);
+            steps.push(taken);
+            refused.into_iter().for_each(|place| tell(herd.agents[place] as usize));
+        }
+        steps
+    }
+}
+
+/// Whether a flow reads nobody but its own agent, and has no kinks.
+fn is_alone(flow: &Flow) -> bool {
+    flow.kinks.is_empty() && flow.frame.slots.len() == 1 && matches!(flow.frame.slots[0], Slot::Root { .. })
+}

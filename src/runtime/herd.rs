@@ -1,0 +1,293 @@
+//! Herds: agents of one type and mode that no guard can concern for a while, as rows of numbers, advanced many at a time.
+//!
+//! Such an agent is *cold*: it runs ahead alone, and leaves no segments. A row holds where it is, where its last step
+//! began, and where the steps began that lead over the present; from there its way can be followed again, to the bit, by
+//! whoever asks where it was ([`Leaps::follow`]). In lanes, an agent that has come far enough makes room for the next.
+
+use crate::math::lanes::{Level, Work};
+use crate::math::{N_LANES, Numbers, Wide};
+use crate::runtime::solve::leap::{LeapRows, Leaps, STATES_MAX};
+use crate::runtime::solve::segment::Segment;
+
+/// Agents of one type and mode.
+#[derive(Clone, Debug)]
+pub struct Herd<'p> {
+    /// How they move.
+    pub leaps: Leaps<'p>,
+    /// The auxiliary columns that their flow reads.
+    inputs: Vec<usize>,
+    /// How many states each has.
+    n: usize,
+    /// By place.
+    pub agents: Vec<u32>,
+    /// How far each has come, s; infinite for one that is not cold.
+    clocks: Vec<f64>,
+    rows: Vec<f64>,
+}
+
+/// Steps taken, and those that were refused.
+#[derive(Clone, Debug, Default)]
+pub struct Advanced {
+    /// Steps.
+    pub steps: u64,
+    /// The places of those that could go no further by such steps.
+    pub refused: Vec<usize>,
+}
+
+/// Up to this many lanes are cheaper one by one.
+const FEW: usize = 3;
+
+impl<'p> Herd<'p> {
+    /// No agents yet; `inputs` are the auxiliary columns that the flow reads.
+    pub fn new(leaps: Leaps<'p>, inputs: Vec<usize>) -> Self {
+        let n = leaps.tape.n_states;
+        Self { leaps, inputs, n, agents: Vec::new(), clocks: Vec::new(), rows: Vec::new() }
+    }
+
+    /// A row: the states; time and states at the begin of the last step; those from which the way is followed; inputs.
+    fn width(&self) -> usize {
+        3 * self.n + 2 + self.inputs.len()
+    }
+
+    fn row(&self, place: usize) -> &[f64] {
+        &self.rows[place * self.width()..][..self.width()]
+    }
+
+    /// Takes an agent in, which gets the last place.
+    pub fn push(&mut self, agent: usize) -> usize {
+        self.agents.push(agent as u32);
+        self.clocks.push(f64::INFINITY);
+        self.rows.resize(self.agents.len() * self.width(), 0.0);
+        self.agents.len() - 1
+    }
+
+    /// Takes an agent out; the one that had the last place, if there is another, has its place now.
+    pub fn remove(&mut self, place: usize) -> Option<usize> {
+        let (last, width) = (self.agents.len() - 1, self.width());
+        self.agents.swap_remove(place);
+        self.clocks.swap_remove(place);
+        self.rows.copy_within(last * width.., place * width);
+        self.rows.truncate(last * width);
+        self.agents.get(place).map(|&agent| agent as usize)
+    }
+
+    /// Has an agent go on from `(t, x)`.
+    pub fn start(&mut self, place: usize, t: f64, x: &[f64], aux: &[f64]) {
+        let (n, width) = (self.n, self.width());
+        self.clocks[place] = t;
+        let row = &mut self.rows[place * width..][..width];
+        row[..n].copy_from_slice(x);
+        for begin in [n, 2 * n + 1] {
+            row[begin] = t;
+            row[begin + 1..begin + 1 + n].copy_from_slice(x);
+        }
+        for (value, &column) in row[3 * n + 2..].iter_mut().zip(&self.inputs) {
+            *value = aux[column];
+        }
+    }
+
+    /// Has an agent go no further.
+    pub fn halt(&mut self, place: usize) {
+        self.clocks[place] = f64::INFINITY;
+    }
+
+    /// How far an agent has come, and its states there.
+    pub fn now(&self, place: usize) -> (f64, &[f64]) {
+        (self.clocks[place], &self.row(place)[..self.n])
+    }
+
+    /// The time and states from which its way is known.
+    pub fn known(&self, place: usize) -> (f64, &[f64]) {
+        let row = self.row(place);
+        (row[2 * self.n + 1], &row[2 * self.n + 2..3 * self.n + 2])
+    }
+
+    /// Follows an agent from where its way is known until a step covers `until`: that step, and the states at its end.
+    pub fn follow(&self, place: usize, until: f64, x: &mut [f64], segment: &mut Segment) {
+        let (start, states) = self.known(place);
+        x.copy_from_slice(states);
+        let mut rows = LeapRows::new(&self.leaps);
+        self.fix(place, &mut rows.fixed);
+        self.leaps.follow((start, until), x, &mut rows, segment);
+    }
+
+    fn fix(&self, place: usize, fixed: &mut [f64]) {
+        let inputs = &self.row(place)[3 * self.n + 2..];
+        let input = |_: u32, column: u32| {
+            let found = self.inputs.iter().position(|&input| input == column as usize);
+            inputs[found.expect("what the series reads are the herd's inputs")]
+        };
+        self.leaps.tape.fix(input, fixed);
+    }
+
+    /// Advances all that have not come as far as `until` until they have; what is known of their ways begins at `from` or
+    /// before it.
+    pub fn advance(&mut self, from: f64, until: f64) -> Advanced {
+        let waiting: Vec<usize> = (0..self.clocks.len()).filter(|&place| self.clocks[place] < until).collect();
+        let mut advanced = Advanced::default();
+        let mut lanes = Lanes::new(&self.leaps);
+        let mut waiting = waiting.into_iter();
+        loop {
+            for lane in 0..N_LANES {
+                if lanes.place[lane] != NOBODY {
+                    continue;
+                }
+                let Some(place) = waiting.next() else { break };
+                self.board(place, lane, from, &mut lanes);
+            }
+            if lanes.n_boarded <= FEW {
+                break;
+            }
+            Level::best().run(Step { leaps: &self.leaps, lanes: &mut lanes });
+            self.leave(until, &mut lanes, &mut advanced);
+        }
+        // The last few: one by one, with the same bits.
+        let mut rows = LeapRows::new(&self.leaps);
+        for lane in 0..N_LANES {
+            if lanes.place[lane] != NOBODY {
+                self.alone(lanes.place[lane], lane, until, &lanes, &mut rows, &mut advanced);
+            }
+        }
+        advanced
+    }
+
+    /// Puts an agent into a lane.
+    fn board(&mut self, place: usize, lane: usize, from: f64, lanes: &mut Lanes) {
+        let (n, width) = (self.n, self.width());
+        self.fix(place, &mut lanes.fixed);
+        let row = &mut self.rows[place * width..][..width];
+        if row[n] <= from {
+            row.copy_within(n..2 * n + 1, 2 * n + 1);
+        }
+        lanes.place[lane] = place;
+        lanes.n_boarded += 1;
+        lanes.t.0[lane] = self.clocks[place];
+        lanes.last_t.0[lane] = row[n];
+        for i in 0..n {
+            lanes.x[i].0[lane] = row[i];
+            lanes.last_x[i].0[lane] = row[n + 1 + i];
+        }
+        for (wide, &value) in lanes.rows.fixed.iter_mut().zip(&lanes.fixed) {
+            wide.0[lane] = value;
+        }
+    }
+
+    /// Takes those out of their lanes that have come far enough, or cannot go on.
+    fn leave(&mut self, until: f64, lanes: &mut Lanes, advanced: &mut Advanced) {
+        let n = self.n;
+        advanced.steps += lanes.n_boarded as u64;
+        for lane in 0..N_LANES {
+            let good = lanes.good.0[lane] != 0.0;
+            if lanes.place[lane] == NOBODY || good && lanes.t.0[lane] < until {
+                continue;
+            }
+            let place = lanes.place[lane];
+            let width = self.width();
+            let row = &mut self.rows[place * width..][..width];
+            // After a refused step it is where that began, and has come there by none that is known.
+            let (t, x) = if good { (lanes.t, &lanes.x) } else { (lanes.last_t, &lanes.last_x) };
+            self.clocks[place] = t.0[lane];
+            row[n] = lanes.last_t.0[lane];
+            for i in 0..n {
+                row[i] = x[i].0[lane];
+                row[n + 1 + i] = lanes.last_x[i].0[lane];
+            }
+            if !good {
+                advanced.refused.push(place);
+                advanced.steps -= 1;
+            }
+            lanes.place[lane] = NOBODY;
+            lanes.n_boarded -= 1;
+        }
+    }
+
+    /// Advances one agent from where its lane has brought it.
+    fn alone(
+        &mut self,
+        place: usize,
+        lane: usize,
+        until: f64,
+        lanes: &Lanes,
+        rows: &mut LeapRows<f64>,
+        advanced: &mut Advanced,
+    ) {
+        let (n, width) = (self.n, self.width());
+        self.fix(place, &mut rows.fixed);
+        let mut t = lanes.t.0[lane];
+        let mut last_t = lanes.last_t.0[lane];
+        let (mut x, mut last_x, mut x_new) = ([0.0; STATES_MAX], [0.0; STATES_MAX], [0.0; STATES_MAX]);
+        for i in 0..n {
+            (x[i], last_x[i]) = (lanes.x[i].0[lane], lanes.last_x[i].0[lane]);
+        }
+        while t < until {
+            let leap = self.leaps.leap(t, &x[..n], rows, &mut x_new[..n]);
+            if leap.good == 0.0 {
+                advanced.refused.push(place);
+                break;
+            }
+            advanced.steps += 1;
+            (last_t, last_x) = (t, x);
+            (t, x) = (leap.end, x_new);
+        }
+        let row = &mut self.rows[place * width..][..width];
+        self.clocks[place] = t;
+        row[..n].copy_from_slice(&x[..n]);
+        row[n] = last_t;
+        row[n + 1..2 * n + 1].copy_from_slice(&last_x[..n]);
+    }
+}
+
+/// No agent is in a lane.
+const NOBODY: usize = usize::MAX;
+
+/// The agents that are advanced at once.
+struct Lanes {
+    place: [usize; N_LANES],
+    n_boarded: usize,
+    t: Wide,
+    x: Vec<Wide>,
+    last_t: Wide,
+    last_x: Vec<Wide>,
+    x_new: Vec<Wide>,
+    good: Wide,
+    rows: LeapRows<Wide>,
+    /// Scratch: what does not move, of one agent.
+    fixed: Vec<f64>,
+}
+
+impl Lanes {
+    fn new(leaps: &Leaps<'_>) -> Self {
+        let (zero, n) = (Wide::all(0.0), leaps.tape.n_states);
+        Self {
+            place: [NOBODY; N_LANES],
+            n_boarded: 0,
+            t: zero,
+            x: vec![zero; n],
+            last_t: zero,
+            last_x: vec![zero; n],
+            x_new: vec![zero; n],
+            good: zero,
+            rows: LeapRows::new(leaps),
+            fixed: vec![0.0; leaps.tape.fixed.len()],
+        }
+    }
+}
+
+/// A step of all lanes.
+struct Step<'a, 'p> {
+    leaps: &'a Leaps<'p>,
+    lanes: &'a mut Lanes,
+}
+
+impl Work for Step<'_, '_> {
+    #[inline(always)]
+    fn work(self) {
+        let Lanes { t, x, last_t, last_x, x_new, good, rows, .. } = self.lanes;
+        let leap = self.leaps.leap(*t, x, rows, x_new);
+        *last_t = *t;
+        *t = leap.end;
+        *good = leap.good;
+        std::mem::swap(x, last_x);
+        std::mem::swap(x, x_new);
+    }
+}

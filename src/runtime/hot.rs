@@ -1,0 +1,123 @@
+//! Who has to be looked at in a window of time: agents whose guards could change in it are *hot*, and take their steps in
+//! the plain form; all others are cold.
+
+use crate::runtime::engine::Engine;
+use crate::runtime::population::ABSENT;
+use crate::runtime::solve::segment::Segment;
+
+impl Engine<'_, '_> {
+    /// Divides the agents for the window from the present to `until`, and advances the cold ones. Returns how many are hot
+    /// that would be cold if no guard concerned them.
+    pub fn open_window(&mut self, until: f64) -> usize {
+        let from = self.present.time;
+        let mut needed = self.look_ahead(until);
+        needed.sort_unstable();
+        needed.dedup();
+        let hot = std::mem::take(&mut self.hot);
+        for agent in hot {
+            if needed.binary_search(&agent).is_ok() || !self.freeze(agent) {
+                self.hot.push(agent);
+            }
+        }
+        for &agent in &needed {
+            self.thaw(agent);
+        }
+        let mut refused = Vec::new();
+        let steps = self.agents.cold.advance(from, until, &mut |agent| refused.push(agent));
+        self.count_cold(&steps);
+        for agent in refused {
+            self.thaw(agent);
+        }
+        self.has_thawed = false;
+        let rows = self.hot.iter().map(|&agent| &self.agents.agents[agent]);
+        rows.filter(|row| self.agents.cold.may_be(row.ty, row.mode)).count()
+    }
+
+    /// Has comparisons sleep beyond `until`; returns the agents of those that do not, and of those that will change.
+    fn look_ahead(&mut self, until: f64) -> Vec<usize> {
+        let mut needed = Vec::new();
+        let mut awake = Vec::new();
+        while let Some(due) = self.queues.uncertified.peek().copied().filter(|due| due.time < until) {
+            self.queues.uncertified.pop();
+            let index = due.number as usize;
+            if self.guards.atoms[index].version != due.version {
+                continue;
+            }
+            match self.sleep_beyond(index, until) {
+                Some(certain) => self.certified(index, certain),
+                None => {
+                    self.add_read(index, &mut needed);
+                    awake.push(due);
+                }
+            }
+        }
+        self.queues.uncertified.extend(awake);
+        let flips: Vec<usize> = self.queues.flips.iter().map(|due| due.number as usize).collect();
+        for index in flips {
+            self.add_read(index, &mut needed);
+        }
+        needed
+    }
+
+    /// Adds the agents that a comparison reads.
+    fn add_read(&self, index: usize, agents: &mut Vec<usize>) {
+        let (atom, slots) = self.guards.atom_slots(&self.agents, index);
+        agents.extend(atom.slots.iter().map(|&slot| slots[slot]).filter(|&agent| agent != ABSENT));
+        let instance = self.guards.atoms[index].instance;
+        for &ty in if atom.folds.is_empty() { &[][..] } else { &self.guards.definition(instance).quantified } {
+            agents.extend_from_slice(&self.agents.of_type[ty]);
+        }
+    }
+
+    /// Has an agent run ahead alone, if its flow lets it. False if not.
+    fn freeze(&mut self, agent: usize) -> bool {
+        let row = &self.agents.agents[agent];
+        let group = &mut self.groups.groups[row.group];
+        if group.members.len() != 1 || !self.agents.cold.may_be(row.ty, row.mode) || group.clock == f64::INFINITY {
+            return false;
+        }
+        self.agents.cold.freeze(agent, row.ty, row.mode, (group.clock, &row.states), &row.aux);
+        group.clock = f64::INFINITY;
+        group.integration.restart();
+        true
+    }
+
+    /// Brings a cold agent back: its last segment covers the present again, and it takes its steps in turn.
+    pub fn thaw(&mut self, agent: usize) {
+        if !self.agents.cold.is_cold(agent) {
+            return;
+        }
+        let time = self.present.time;
+        let cold = &mut self.agents.cold;
+        let row = &mut self.agents.agents[agent];
+        let clock = if cold.knows(agent, time) {
+            let mut segment = Segment::default();
+            cold.follow(agent, time, &mut row.states, &mut segment);
+            row.segment = segment;
+            row.segment.end
+        } else {
+            let (clock, states) = cold.known(agent);
+            row.states.copy_from_slice(&states);
+            clock
+        };
+        cold.thaw(agent);
+        let number = row.group;
+        self.groups.groups[number].clock = clock;
+        self.groups.groups[number].integration.restart();
+        self.queue_clock(number);
+        self.hot.push(agent);
+        self.has_thawed = true;
+    }
+
+    /// Counts the steps of cold agents, by herd.
+    fn count_cold(&mut self, steps: &[u64]) {
+        for (herd, &steps) in steps.iter().enumerate() {
+            let (ty, n_rates, operations) = self.agents.cold.cost(herd);
+            let counts = &mut self.stepper.counts;
+            counts.steps += steps;
+            counts.steps_of_type[ty] += steps;
+            counts.rhs_evaluations += steps * n_rates;
+            counts.operations += steps * operations;
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! One step by Taylor series of one agent or of many in lanes, to be taken again at will: it depends on time and states only.
+//!
+//! The step is that of [`crate::runtime::solve::taylor`] with its first try; where that would not be accepted, the step is
+//! refused, and the agent is left to who can try again. One source, the same bits in every lane.
+
+use crate::codegen::series::SeriesTape;
+use crate::math::Numbers;
+use crate::runtime::solve::control::Accuracy;
+use crate::runtime::solve::segment::{N_MAX, Segment};
+use crate::runtime::solve::series_step::{FALLEN, reach};
+
+/// The series of a flow, with all that a step depends on besides time and states.
+#[derive(Clone, Copy, Debug)]
+pub struct Leaps<'p> {
+    /// The series.
+    pub tape: &'p SeriesTape,
+    /// Its order.
+    pub order: usize,
+    /// What a step is accepted by.
+    pub accuracy: Accuracy,
+    /// No step leads beyond, s.
+    pub stop: f64,
+}
+
+/// Scratch for steps.
+#[derive(Clone, Debug, Default)]
+pub struct LeapRows<T> {
+    /// What does not move.
+    pub fixed: Vec<T>,
+    coefficients: Vec<T>,
+    rates: Vec<T>,
+    powers: Vec<T>,
+}
+
+impl<T: Numbers> LeapRows<T> {
+    /// Room for the steps of a flow.
+    pub fn new(leaps: &Leaps<'_>) -> Self {
+        let zero = T::all(0.0);
+        Self {
+            fixed: vec![zero; leaps.tape.fixed.len()],
+            coefficients: vec![zero; leaps.tape.n_coefficients(leaps.order)],
+            rates: vec![zero; leaps.tape.n_coefficients(1)],
+            powers: vec![zero; leaps.order + 1],
+        }
+    }
+}
+
+/// What a step comes to.
+#[derive(Clone, Copy, Debug)]
+pub struct Leap<T> {
+    /// Its length, s.
+    pub h: T,
+    /// Where it ends, s.
+    pub end: T,
+    /// 1 if it is good enough, 0 if it is refused.
+    pub good: T,
+}
+
+impl Leaps<'_> {
+    /// A step from `(t, x)` for the numbers in `rows.fixed`; the states at its end go to `x_new`.
+    #[inline(always)]
+    pub fn leap<T: Numbers>(&self, t: T, x: &[T], rows: &mut LeapRows<T>, x_new: &mut [T]) -> Leap<T> {
+        let LeapRows { fixed, coefficients, rates, powers } = rows;
+        let (order, n) = (self.order, x.len());
+        self.tape.expand_numbers(t, x, fixed, order, coefficients);
+        let stop = self.stop;
+        let h = reach(coefficients, n, order, self.accuracy);
+        let h = h.zip(t, |h, t| if h >= (stop - t) * (1.0 - 1e-12) { stop - t } else { h });
+        let end = t.zip(h, |t, h| if h == stop - t { stop } else { t + h });
+        let mut good = end.zip(t, |end, t| if end > t { 1.0 } else { 0.0 });
+        let mut power = T::all(1.0);
+        for place in powers.iter_mut() {
+            *place = power;
+            power = power.zip(h, |power, h| f64::min(power * h, f64::MAX));
+        }
+        for (row, x_new) in coefficients.chunks_exact(order + 1).zip(x_new.iter_mut()) {
+            let mut sum = T::all(0.0);
+            for (c, power) in row.iter().zip(powers.iter()).rev() {
+                sum = sum.plus_product(c, power);
+            }
+            *x_new = sum;
+        }
+        self.tape.expand_numbers(end, x_new, fixed, 1, rates);
+        let scale = 1.0 / (order as f64 + 1.0);
+        for (i, row) in coefficients.chunks_exact(order + 1).take(n).enumerate() {
+            let mut slope = T::all(0.0);
+            for k in (1..=order).rev() {
+                let term = row[k].zip(powers[k], |c, power| c * power);
+                slope = slope.zip(term, |slope, term| slope + k as f64 * term);
+            }
+            let ended = rates[2 * i + 1].zip(h, |rate, h| h * rate);
+            let defect = ended.zip(slope, |ended, slope| (ended - slope).abs() * scale);
+            let last = row[order].zip(powers[order], |c, power| (c * power).abs());
+            let before = row[order - 1].zip(powers[order - 1], |c, power| (c * power).abs() * FALLEN);
+            let error = defect.zip(last, larger).zip(before, larger);
+            let size = x[i].zip(x_new[i], |x, x_new| larger(x.abs(), x_new.abs()));
+            let allowed = size.map(|size| self.accuracy.absolute + self.accuracy.tolerance * size);
+            // NaN is no number that is small enough.
+            let accepted = error.zip(allowed, |error, allowed| if error <= allowed { 1.0 } else { 0.0 });
+            good = good.zip(accepted, |good, accepted| good * accepted);
+        }
+        Leap { h, end, good }
+    }
+}
+
+/// The larger of two; NaN if the first is.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
+impl Leaps<'_> {
+    /// Follows an agent from `(t, x)` until a step covers `until`, s: its dense output in `segment`, and the states at its
+    /// end in `x`. False if a step is refused before: then `x` holds the states at its begin, and `segment` rests there.
+    pub fn follow(
+        &self,
+        (mut t, until): (f64, f64),
+        x: &mut [f64],
+        rows: &mut LeapRows<f64>,
+        segment: &mut Segment,
+    ) -> bool {
+        let mut x_new = [0.0; STATES_MAX];
+        let x_new = &mut x_new[..x.len()];
+        loop {
+            let leap = self.leap(t, x, rows, x_new);
+            if leap.good == 0.0 {
+                *segment = Segment::at(t, x);
+                return false;
+            }
+            if leap.end >= until {
+                let n_terms = self.order + 1;
+                debug_assert!(n_terms <= N_MAX);
+                let terms = segment.reset(t, leap.h, leap.end, n_terms, x.len());
+                for (row, terms) in rows.coefficients.chunks_exact(n_terms).zip(terms.chunks_exact_mut(n_terms)) {
+                    for ((term, c), power) in terms.iter_mut().zip(row).zip(&rows.powers) {
+                        *term = c * power;
+                    }
+                }
+                x.copy_from_slice(x_new);
+                return true;
+            }
+            x.copy_from_slice(x_new);
+            t = leap.end;
+        }
+    }
+}
+
+/// The most states of an agent that is followed so; agents of more are stepped one by one.
+pub const STATES_MAX: usize = 32;
