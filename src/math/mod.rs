@@ -3,7 +3,6 @@
 //! In: nothing but numbers. Out: [`Op`], the table of operators whose [`Op::eval`] is *the* meaning that the
 //! interpreter, constant folding and machine code share bit for bit; [`elementary`], the functions behind it;
 //! [`Interval`], bounds on an operator over a box; [`runge_kutta`], the coefficients that steps are made of; [`draw`],
-<<<<<<< ours
 //! random numbers; [`Scale`], the sizes of units; [`lanes`], the operators over columns.
 //! Promised: the same bits on every CPU and for every thread count, because no multiplication is fused into an addition
 //! unless it is written so, and the CPU's features choose how many lanes an instruction has, never which operations.
@@ -11,15 +10,7 @@
 pub mod elementary;
 pub mod op;
 pub mod lanes;
-=======
-//! random numbers; [`Numbers`], a number for each of some agents; [`Scale`], the sizes of units.
-//! Promised: the same bits on every CPU and for every thread count, because nothing here looks at the CPU's
-//! features and no multiplication is fused into an addition unless it is written so.
-
-pub mod elementary;
-pub mod op;
 pub mod numbers;
->>>>>>> theirs
 pub mod interval;
 pub mod runge_kutta;
 pub mod draw;

@@ -69,7 +69,8 @@ pub enum Obstacle {
 /// Takes the steps; owns their scratch space.
 pub struct Stepper {
     integrator: Integrator,
-    accuracy: Accuracy,
+    /// What steps are accepted by.
+    pub accuracy: Accuracy,
     pieces_max: u32,
     x: Vec<f64>,
     /// What steps took so far.

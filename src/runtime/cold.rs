@@ -6,7 +6,7 @@ use crate::codegen::program::{Flow, Program, Slot};
 use crate::runtime::herd::{Advanced, Herd};
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::leap::{Leaps, STATES_MAX};
-use crate::runtime::solve::segment::Segment;
+use crate::runtime::solve::segment::{N_MAX, Segment};
 use crate::runtime::solve::series_step;
 
 /// A place in a herd.
@@ -37,7 +37,7 @@ impl<'p> Cold<'p> {
     /// Herds for `n_agents`, all of which are not cold.
     pub fn new(program: &'p Program, n_agents: usize, accuracy: Accuracy, stop: f64) -> Self {
         let mut herds = Vec::new();
-        let order = series_step::order(accuracy.tolerance);
+        let order = series_step::order(accuracy.tolerance, N_MAX - 1);
         let mut herd_of = |ty: usize, mode: usize| {
             let flow = program.types[ty].modes[mode].flow.as_ref()?;
             let tape = program.series[ty][mode].as_ref()?;

@@ -18,6 +18,7 @@ use crate::runtime::guards::{Guards, Listing, Origin, TooManyGuards};
 use crate::runtime::limits::Limits;
 use crate::runtime::neighbours::Neighbours;
 use crate::runtime::notes::Notes;
+use crate::runtime::paper::Form;
 use crate::runtime::observe::{Cell, End, FalseAssert, Last, Observer, Outcome, Stats, TypeStats};
 use crate::runtime::population::Agents;
 use crate::runtime::present::{Depth, Present};
@@ -94,6 +95,8 @@ pub struct Engine<'p, 'o> {
     pub reaches: Reaches,
     /// The near pairs; none in the plain form.
     pub neighbours: Neighbours,
+    /// Whether steps go by Taylor series where there is one.
+    pub by_series: bool,
     /// The agents that could be cold and are not.
     pub hot: Vec<usize>,
     /// The end of the window of time at hand, s.
@@ -149,7 +152,7 @@ impl<'p, 'o> Engine<'p, 'o> {
     /// A run that has not begun.
     pub fn new(
         program: &'p Program,
-        listing: Listing,
+        form: Form,
         limits: &Limits,
         interrupt: &'o AtomicBool,
         observer: &'o mut dyn Observer,
@@ -158,16 +161,21 @@ impl<'p, 'o> Engine<'p, 'o> {
         let accuracy = Accuracy { tolerance: run.tolerance, absolute: run.absolute.unwrap_or(run.tolerance) };
         let time_end = run.until.unwrap_or(f64::INFINITY);
         let agents = Agents::new(program);
+        let (listing, method) = match form {
+            Form::Fast => (Listing::Near, method(run.integrator)),
+            Form::Plain => (Listing::All, method(run.integrator)),
+        };
         let guards = Guards::new(&agents, listing, limits.guards_max)
             .map_err(|TooManyGuards { needed }| Reason::GuardLimit { needed, limit: limits.guards_max })?;
         Ok(Self {
             program,
             present: Present::new(&agents),
-            stepper: Stepper::new(&agents, method(run.integrator), accuracy, time_end, limits),
+            stepper: Stepper::new(&agents, method, accuracy, time_end, limits),
             curves: CurveRows::new(&agents),
             enclosures: Enclosures::new(&agents, accuracy),
             reaches: Reaches::new(&agents, accuracy, time_end),
             neighbours: Neighbours::default(),
+            by_series: method == MethodName::Taylor,
             hot: Vec::new(),
             window_end: f64::INFINITY,
             has_thawed: false,

@@ -85,7 +85,6 @@ use failure::Failure;
 pub use limits::Limits;
 use observe::{End, Observer, Outcome, Stats};
 pub use paper::{Algorithm, Form};
-use guards::Listing;
 
 /// Runs a program and tells the observer what happens.
 ///
@@ -108,11 +107,7 @@ pub fn simulate_by(
     interrupt: &AtomicBool,
     observer: &mut dyn Observer,
 ) -> Outcome {
-    let listing = match algorithm.form() {
-        Form::Fast => Listing::Near,
-        Form::Plain => Listing::All,
-    };
-    let mut engine = match Engine::new(program, listing, limits, interrupt, observer) {
+    let mut engine = match Engine::new(program, algorithm.form(), limits, interrupt, observer) {
         Ok(engine) => engine,
         Err(failure) => return stillborn(failure),
     };

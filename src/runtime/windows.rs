@@ -63,10 +63,10 @@ impl Engine<'_, '_> {
 
     /// Herds for those who may be cold; none if every step is recorded.
     fn make_herds(&mut self) {
-        if self.recorder.wants_steps() || !self.stepper.goes_by_series() {
+        if self.recorder.wants_steps() || !self.by_series {
             return;
         }
-        let accuracy = self.stepper.accuracy();
+        let accuracy = self.stepper.accuracy;
         self.agents.cold = Cold::new(self.program, self.agents.len(), accuracy, self.time_end);
         if self.agents.cold.is_used() {
             self.hot = (0..self.agents.len()).collect();

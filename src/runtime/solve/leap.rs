@@ -4,7 +4,7 @@
 //! refused, and the agent is left to who can try again. One source, the same bits in every lane.
 
 use crate::codegen::series::SeriesTape;
-use crate::math::Numbers;
+use crate::math::{Numbers, Wide};
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::segment::{N_MAX, Segment};
 use crate::runtime::solve::series_step::{FALLEN, reach};
@@ -59,10 +59,10 @@ pub struct Leap<T> {
 impl Leaps<'_> {
     /// A step from `(t, x)` for the numbers in `rows.fixed`; the states at its end go to `x_new`.
     #[inline(always)]
-    pub fn leap<T: Numbers>(&self, t: T, x: &[T], rows: &mut LeapRows<T>, x_new: &mut [T]) -> Leap<T> {
+    pub fn leap<T: Expand>(&self, t: T, x: &[T], rows: &mut LeapRows<T>, x_new: &mut [T]) -> Leap<T> {
         let LeapRows { fixed, coefficients, rates, powers } = rows;
         let (order, n) = (self.order, x.len());
-        self.tape.expand_numbers(t, x, fixed, order, coefficients);
+        T::expand(self.tape, t, x, fixed, order, coefficients);
         let stop = self.stop;
         let h = reach(coefficients, n, order, self.accuracy);
         let h = h.zip(t, |h, t| if h >= (stop - t) * (1.0 - 1e-12) { stop - t } else { h });
@@ -80,7 +80,7 @@ impl Leaps<'_> {
             }
             *x_new = sum;
         }
-        self.tape.expand_numbers(end, x_new, fixed, 1, rates);
+        T::expand(self.tape, end, x_new, fixed, 1, rates);
         let scale = 1.0 / (order as f64 + 1.0);
         for (i, row) in coefficients.chunks_exact(order + 1).take(n).enumerate() {
             let mut slope = T::all(0.0);
@@ -100,6 +100,24 @@ impl Leaps<'_> {
             good = good.zip(accepted, |good, accepted| good * accepted);
         }
         Leap { h, end, good }
+    }
+}
+
+/// Numbers in which a series can be expanded; what does it is compiled once.
+pub trait Expand: Numbers {
+    /// [`SeriesTape::expand_numbers`].
+    fn expand(tape: &SeriesTape, time: Self, states: &[Self], fixed: &[Self], order: usize, rows: &mut [Self]);
+}
+
+impl Expand for f64 {
+    fn expand(tape: &SeriesTape, time: f64, states: &[f64], fixed: &[f64], order: usize, rows: &mut [f64]) {
+        tape.expand(time, states, fixed, order, rows);
+    }
+}
+
+impl Expand for Wide {
+    fn expand(tape: &SeriesTape, time: Wide, states: &[Wide], fixed: &[Wide], order: usize, rows: &mut [Wide]) {
+        tape.expand_wide(time, states, fixed, order, rows);
     }
 }
 

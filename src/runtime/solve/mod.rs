@@ -10,6 +10,7 @@ pub mod tsit5;
 pub mod adams;
 pub mod series_step;
 pub mod taylor;
+pub mod leap;
 pub mod integrate;
 mod bracket;
 pub mod roots;
