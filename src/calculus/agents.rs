@@ -137,8 +137,7 @@ fn interaction(draft: &mut Draft, declared: &Interaction) -> InteractionSystem {
         let lowered = transition(draft, scope, step, 0);
         let Some(transition) = draft.keep(lowered) else { continue };
         let symmetric = declared.types[0] == declared.types[1] && symmetry::symmetric(draft, &transition);
-        let near = Vec::new();
-        transitions.push(PairTransition { transition, symmetric, near });
+        transitions.push(PairTransition { transition, symmetric, near: Vec::new() });
     }
     InteractionSystem { name: declared.name.clone(), types: declared.types.map(TypeId::index), transitions }
 }

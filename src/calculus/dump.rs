@@ -8,7 +8,7 @@ use crate::calculus::graph::NodeId;
 use crate::calculus::print::{Names, Sheet};
 use crate::calculus::system::{
     ActionStep, AgentSystem, Atom, ClaimKind, Column, Condition, Flow, Frame, FunctionId, Guard, KinkKind,
-    LetValue, ModeSystem, PairTransition, Quantified, System, Target, TransitionSystem, Trigger,
+    LetValue, ModeSystem, Near, PairTransition, Quantified, System, Target, TransitionSystem, Trigger,
 };
 
 /// The whole system as text; the same for the same system.
@@ -74,7 +74,7 @@ fn agent(system: &System, ty: &AgentSystem, out: &mut String) {
         if transition.source != 0 {
             let _ = write!(head, " of {}", ty.modes[transition.source].path);
         }
-        self::transition(system, transition, ty, head, out);
+        self::transition(system, transition, ty, head, None, out);
     }
     out.push('\n');
 }
@@ -95,6 +95,7 @@ fn mode(system: &System, ty: &AgentSystem, mode: &ModeSystem, out: &mut String) 
         };
         let text = block.condition(&sheet, &claim.violation, &claim.violation.condition, 0);
         block.line(4, format!("{word} violated by {text}"));
+        block.ranges(&sheet, &claim.violation.condition, 6);
         block.atoms(&sheet, &claim.violation.atoms, 6);
         block.close(&sheet, out);
     }
@@ -157,7 +158,7 @@ fn pair_transition(system: &System, pair: &PairTransition, out: &mut String) {
     let kind = if pair.symmetric { "symmetric" } else { "ordered" };
     let head = format!("transition {}, {kind}", pair.transition.label);
     let slot = &pair.transition.frame.slots[0];
-    transition(system, &pair.transition, &system.types[slot.ty()], head, out);
+    transition(system, &pair.transition, &system.types[slot.ty()], head, Some(&pair.near), out);
 }
 
 fn transition(
@@ -165,6 +166,7 @@ fn transition(
     transition: &TransitionSystem,
     ty: &AgentSystem,
     head: String,
+    near: Option<&[Near]>,
     out: &mut String,
 ) {
     let mut block = Block::new(system, &transition.frame);
@@ -186,6 +188,10 @@ fn transition(
     }
     if let Some(guard) = guard {
         block.line(4, format!("when {}", block.condition(&sheet, guard, &guard.condition, 0)));
+        if let Some(near) = near {
+            block.line(6, format!("near: {}", range(&sheet, near, 1, "pairs")));
+        }
+        block.ranges(&sheet, &guard.condition, 6);
         block.atoms(&sheet, &guard.atoms, 6);
     }
     if let Some(priority) = transition.priority {
@@ -193,6 +199,18 @@ fn transition(
     }
     block.steps(&sheet, &transition.actions.steps, 4);
     block.close(&sheet, out);
+}
+
+/// `|a.x - b.x| <= 1, |a.y - b.y| <= 1`, to six digits, or all of whatever there is.
+fn range(sheet: &Sheet, near: &[Near], slot: usize, what: &str) -> String {
+    if near.is_empty() {
+        return format!("all {what}");
+    }
+    let bounds = near.iter().map(|&Near { own, other, within }| {
+        let within: f64 = format!("{within:.5e}").parse().expect("a number is one");
+        format!("|{} - {}| <= {within}", sheet.state(0, own), sheet.state(slot, other))
+    });
+    bounds.collect::<Vec<_>>().join(", ")
 }
 
 /// Lines that share names for their parts.
@@ -332,6 +350,23 @@ impl<'a> Block<'a> {
         let other = if quantified.other { "other " } else { "" };
         let body = self.condition(sheet, guard, &quantified.body, 0);
         format!("{word} {name} in {other}{}: {body}", self.names.types[quantified.ty].name)
+    }
+
+    /// A line for every quantifier.
+    fn ranges(&mut self, sheet: &Sheet, condition: &Condition, indent: usize) {
+        match condition {
+            Condition::And(terms) | Condition::Or(terms) => {
+                terms.iter().for_each(|term| self.ranges(sheet, term, indent));
+            }
+            Condition::Exists(quantified) | Condition::Forall(quantified) => {
+                let Quantified { slot, near, body, .. } = quantified;
+                let name = self.names.frame.slots[*slot].name();
+                self.line(indent, format!("near {name}: {}", range(sheet, near, *slot, "agents")));
+                self.ranges(sheet, body, indent);
+            }
+            Condition::Rising(_, inner) => self.ranges(sheet, inner, indent),
+            Condition::Constant(_) | Condition::Discrete(_) | Condition::Atom(_) => {}
+        }
     }
 
     fn steps(&mut self, sheet: &Sheet, steps: &[ActionStep], indent: usize) {

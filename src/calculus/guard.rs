@@ -9,7 +9,7 @@ use crate::calculus::error::Error;
 use crate::calculus::frame::Scope;
 use crate::calculus::graph::{Graph, Node, NodeId};
 use crate::calculus::print::{self, Names};
-use crate::calculus::system::{Atom, Condition, Frame, Guard, Quantified, Relation, Slot};
+use crate::calculus::system::{Atom, Condition, Frame, Guard, Quantified, Range, Relation, Slot};
 use crate::math::Op;
 use crate::model::ir::{ExprId, Quantifier};
 
@@ -57,7 +57,8 @@ impl Numbering<'_, '_> {
             Cond::Or(terms) => Condition::Or(terms.into_iter().map(|term| self.condition(term)).collect()),
             Cond::Quantified(kind, range, body) => {
                 let body = Box::new(self.condition(*body));
-                let quantified = Quantified { slot: range.slot, ty: range.ty, other: range.other, body };
+                let Range { slot, ty, other } = range;
+                let quantified = Quantified { slot, ty, other, body, near: Vec::new() };
                 match kind {
                     Quantifier::Exists => Condition::Exists(quantified),
                     Quantifier::Forall => Condition::Forall(quantified),

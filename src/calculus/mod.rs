@@ -29,6 +29,11 @@ mod flow;
 mod actions;
 mod symmetry;
 mod agents;
+mod form;
+mod bounds;
+mod reader;
+mod growth;
+mod near;
 mod dump;
 mod lint;
 
@@ -49,7 +54,7 @@ pub fn derive(model: &Model) -> Result<System, Vec<Diagnostic>> {
     agents::lets(&mut draft);
     let mut interactions = agents::interactions(&mut draft);
     agents::number_declarations(&mut draft.types, &mut interactions);
-    draft.finish(interactions)
+    draft.finish(interactions).map(near::ranges)
 }
 
 #[cfg(test)]

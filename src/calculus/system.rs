@@ -385,6 +385,22 @@ pub struct Quantified {
     pub other: bool,
     /// What is to hold (filter included).
     pub body: Box<Condition>,
+    /// Which agents matter: those beyond one of these bounds from the agent in slot 0 settle nothing. The body of `exists` is
+    /// false for them, now and at any instant at which it becomes true; that of `forall` is true. Empty: all matter.
+    pub near: Vec<Near>,
+}
+
+/// `|a.x - b.y| <= within`, for x a state of the agent in slot 0 and y one of the agent in slot 1 or in that of a quantifier.
+///
+/// Bounds of differences of real numbers: where states are so large that their own rounding counts, so it does here.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Near {
+    /// Which state of the agent in slot 0.
+    pub own: usize,
+    /// Which state of the other one.
+    pub other: usize,
+    /// At least 0, finite.
+    pub within: f64,
 }
 
 /// A comparison of reals, `g <= 0` or `g < 0`.
@@ -593,17 +609,6 @@ pub struct PairTransition {
     pub transition: TransitionSystem,
     /// The same when the two change places (rule 5): one flag per unordered pair, slot 0 the lower number.
     pub symmetric: bool,
-    /// How near the two are in some of their states where the condition holds; none: it may hold however far they are.
+    /// How near the two have to be for the guard to be true, or to become so. All bounds hold; empty: none is known.
     pub near: Vec<Near>,
-}
-
-/// A condition implies |own - other| <= within, for a state of one agent and one of another.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Near {
-    /// State of the first.
-    pub own: usize,
-    /// State of the second.
-    pub other: usize,
-    /// How far apart they are at most.
-    pub within: f64,
 }

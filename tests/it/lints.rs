@@ -426,3 +426,38 @@ fn a_quantifier_without_other_is_fine_where_oneself_does_not_settle_it() {
     }
     assert_eq!(of_agent("state x = p  flow { x' = 1 }  assert forall o in A: abs(o.x - x) >= 1"), ["HY0611"]);
 }
+
+#[test]
+fn many_pairs_that_no_distance_prunes_are_told() {
+    let text = |n: usize, own: &str, guard: &str| {
+        format!(
+            "agent A(p: real) {{ state x = index, v = p  flow {{ x' = v  v' = 0 }} {own} }}
+             agent B {{ state z = 0  flow {{ z' = 1 }} }}
+             interaction I(a: A, b: A) {{ t: when {guard} {{ a.v := b.v }} }}
+             system {{ a = A[{n}](p = index)  b = B() }}"
+        )
+    };
+    let (near, far) = ("abs(a.x - b.x) <= 1 and a.v > b.v", "a.v > b.v");
+    assert_eq!(codes(&text(320, "", far)), ["HY0614"], "102 080 pairs");
+    assert_eq!(codes(&text(310, "", far)), [""; 0], "95 790 pairs");
+    let once = "interaction I(a: A, b: A) { t: when a.x + b.x < 1 { a.v := 0  b.v := 0 } }";
+    let once = |n: usize| text(n, "", near).replace("interaction I", &format!("{once} interaction J"));
+    assert_eq!(codes(&once(440)), [""; 0], "96 580 pairs in either order");
+    assert_eq!(codes(&once(460)), ["HY0614"], "105 570 pairs in either order");
+    let cases = [
+        ("", near, false),
+        ("", "a.x < b.x and a.x + 1 > b.x", false),
+        ("", "abs(a.x - b.x) <= 1 or a.v > 3", true),
+        // never true, which is told as such
+        ("", "a.x*a.x + b.x*b.x < -1 - a.p^2", false),
+        ("u: when exists o in other A: o.v > v { v := 0 }", near, true),
+        ("u: when exists o in other A: o.v > v and abs(o.x - x) < 2 { v := 0 }", near, false),
+        ("u: when forall o in other A: abs(o.x - x) > 2 { v := 0 }", near, false),
+        ("u: when exists o in B: o.z > x { v := 0 }", near, false),
+        ("assert forall o in other A: o.v + v >= 0", near, true),
+        ("assert forall o in other A: abs(o.x - x) >= 0.5", near, false),
+    ];
+    for (own, guard, warned) in cases {
+        assert_eq!(codes(&text(400, own, guard)).contains(&"HY0614"), warned, "{own} {guard}");
+    }
+}

@@ -21,6 +21,7 @@ mod rules;
 mod run_errors;
 mod explanations;
 mod instants;
+mod nearness;
 mod lints;
 mod crowds;
 mod grazes;

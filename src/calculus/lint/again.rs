@@ -7,13 +7,13 @@
 
 use rustc_hash::FxHashMap;
 
+use crate::calculus::bounds::{Bounds, REAL};
+use crate::calculus::form::FormId;
 use crate::calculus::graph::{Node, NodeId};
 use crate::calculus::lint::Warning;
-use crate::calculus::lint::bounds::{Bounds, REAL};
 use crate::calculus::lint::effects::{Effect, before, effect, guard, nodes, plain_guard, read_by, reads};
-use crate::calculus::lint::form::FormId;
-use crate::calculus::lint::reader::Reader;
 use crate::calculus::lint::truth::{Truth, holds, truth};
+use crate::calculus::reader::Reader;
 use crate::calculus::system::{
     ActionStep, Condition, Frame, FunctionId, Guard, Relation, System, Target, TransitionSystem,
 };

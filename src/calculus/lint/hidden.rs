@@ -3,11 +3,11 @@
 //!
 //! Order is by priority, then by declaration (rule 4). Agent-level transitions are not looked at: they stay armed when the mode changes.
 
+use crate::calculus::bounds::Bounds;
 use crate::calculus::lint::Warning;
-use crate::calculus::lint::bounds::Bounds;
 use crate::calculus::lint::effects::{COMPARED_MAX, comes_before, plain_guard};
-use crate::calculus::lint::reader::Reader;
 use crate::calculus::lint::truth::{Truth, truth};
+use crate::calculus::reader::Reader;
 use crate::calculus::system::{AgentSystem, System, TransitionSystem};
 
 /// Looks at the transitions of every mode.

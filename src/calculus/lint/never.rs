@@ -5,12 +5,12 @@
 //! not constant anywhere: `max(x, 0) <= 0` holds in a whole region.
 
 use crate::base::Span;
+use crate::calculus::bounds::{Bounds, REAL};
 use crate::calculus::graph::{Graph, Node, NodeId};
 use crate::calculus::lint::Warning;
-use crate::calculus::lint::bounds::{Bounds, REAL};
 use crate::calculus::lint::effects::{guard, nodes};
-use crate::calculus::lint::reader::Reader;
 use crate::calculus::lint::truth::{Truth, truth};
+use crate::calculus::reader::Reader;
 use crate::calculus::system::{
     AgentSystem, Atom, Condition, Guard, Layout, ModeSystem, Relation, Slot, System, TransitionSystem,
 };

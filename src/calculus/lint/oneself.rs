@@ -4,11 +4,11 @@
 use rustc_hash::FxHashMap;
 
 use crate::base::Span;
+use crate::calculus::bounds::Bounds;
 use crate::calculus::lint::Warning;
-use crate::calculus::lint::bounds::Bounds;
 use crate::calculus::lint::effects::guard;
-use crate::calculus::lint::reader::Reader;
 use crate::calculus::lint::truth::{Truth, truth};
+use crate::calculus::reader::Reader;
 use crate::calculus::system::{Condition, Frame, Guard, Quantified, System};
 
 /// Looks at the guards and claims of every agent type.
@@ -54,7 +54,7 @@ impl Asker<'_> {
 
     /// A quantifier, and with which truth of its body for the agent itself it is settled.
     fn quantified(&self, quantified: &Quantified, settled: Truth, found: &mut Vec<Warning>) {
-        let Quantified { slot, ty, other, body } = quantified;
+        let Quantified { slot, ty, other, body, .. } = quantified;
         self.look_at(body, found);
         if *other || self.frame.slots[0].ty() != *ty {
             return;
@@ -78,7 +78,7 @@ impl Asker<'_> {
 }
 
 /// Where the first comparison of a condition stands.
-fn first_atom(guard: &Guard, condition: &Condition) -> Option<Span> {
+pub fn first_atom(guard: &Guard, condition: &Condition) -> Option<Span> {
     match condition {
         Condition::Atom(k) => Some(guard.atoms[*k].span),
         Condition::And(terms) | Condition::Or(terms) => terms.iter().find_map(|term| first_atom(guard, term)),

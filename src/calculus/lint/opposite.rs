@@ -6,12 +6,12 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use crate::calculus::bounds::Bounds;
+use crate::calculus::form::{Form, FormId, Forms};
 use crate::calculus::graph::Node;
 use crate::calculus::lint::Warning;
-use crate::calculus::lint::bounds::Bounds;
 use crate::calculus::lint::effects::{before, effect, plain_guard, read_by, reads};
-use crate::calculus::lint::form::{Form, FormId, Forms};
-use crate::calculus::lint::reader::Reader;
+use crate::calculus::reader::Reader;
 use crate::calculus::system::{
     Atom, Condition, Flow, Frame, Guard, Quantified, System, Target, TransitionSystem,
 };

@@ -1,6 +1,6 @@
 //! Whether a condition is always true, never, or either, as far as the bounds tell.
 
-use crate::calculus::lint::reader::Reader;
+use crate::calculus::reader::Reader;
 use crate::calculus::system::{Condition, Guard, Relation};
 use crate::math::Interval;
 

@@ -19,6 +19,8 @@ pub enum Warning {
     Chattering { labels: [String; 2], spans: [Span; 2] },
     /// A quantifier that counts the asking agent in, for which its body is settled.
     Oneself { name: String, ty: String, span: Span, holds: bool },
+    /// A condition over two agents that says nothing about how near they are, and many pairs of them; its label or the bound name.
+    AllPairs { name: String, span: Span, n_pairs: usize },
 }
 
 impl From<Warning> for Diagnostic {
@@ -69,6 +71,12 @@ impl From<Warning> for Diagnostic {
                 Diagnostic::warning("HY0611", format!("`{name}` ranges over the agent itself, too"))
                     .label(span, format!("always {why} if `{name}` is `self`"))
                     .help(format!("write `{name} in other {ty}`"))
+            }
+            Warning::AllPairs { name, span, n_pairs } => {
+                Diagnostic::warning("HY0614", format!("`{name}` is looked at for all {n_pairs} pairs of agents"))
+                    .label(span, "may be true for two that are far apart")
+                    .note("near pairs alone are looked at where a condition bounds a difference of states")
+                    .help("say how near they have to be: `... and abs(a.x - b.x) <= 10`")
             }
         }
     }

@@ -25,6 +25,33 @@ pub struct Form {
     pub constant: f64,
 }
 
+impl Form {
+    /// Its values, from those of its terms.
+    fn interval(&self, of_term: impl Fn(usize) -> Interval) -> Interval {
+        let terms = self.terms.iter().map(|&(term, factor)| scaled(of_term(term), factor));
+        let sum = terms.reduce(|sum, term| Interval::eval(Op::Add, &[sum, term]));
+        match sum {
+            None => Interval::point(self.constant),
+            Some(sum) if self.constant == 0.0 => sum,
+            Some(sum) => Interval::eval(Op::Add, &[sum, Interval::point(self.constant)]),
+        }
+    }
+}
+
+/// The forms of one question while a leaf has only some of its values.
+#[derive(Debug)]
+pub struct Narrowed<'f> {
+    forms: &'f Forms,
+    terms: Vec<Interval>,
+}
+
+impl Narrowed<'_> {
+    /// The values that a form can then have.
+    pub fn interval(&self, id: FormId) -> Interval {
+        self.forms.get(id).interval(|term| self.terms[term])
+    }
+}
+
 /// What a term is.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum Term {
@@ -66,21 +93,43 @@ impl Forms {
     pub fn as_leaf(&self, id: FormId) -> Option<(Node, f64, f64)> {
         let Form { terms, constant } = self.get(id);
         let [(term, factor)] = terms.as_slice() else { return None };
-        match &self.terms[*term].0 {
-            Term::Leaf(node) => Some((*node, *factor, *constant)),
-            Term::Apply(..) => None,
-        }
+        self.leaf_of(*term).map(|node| (node, *factor, *constant))
     }
 
     /// The values that a form can have.
     pub fn interval(&self, id: FormId) -> Interval {
-        let Form { terms, constant } = self.get(id);
-        let terms = terms.iter().map(|&(term, factor)| scaled(self.terms[term].1, factor));
-        let sum = terms.reduce(|sum, term| Interval::eval(Op::Add, &[sum, term]));
-        match sum {
-            None => Interval::point(*constant),
-            Some(sum) if *constant == 0.0 => sum,
-            Some(sum) => Interval::eval(Op::Add, &[sum, Interval::point(*constant)]),
+        self.get(id).interval(|term| self.terms[term].1)
+    }
+
+    /// The values of all forms while a leaf has only those in `interval`.
+    pub fn narrowed(&self, leaf: Node, interval: Interval) -> Narrowed<'_> {
+        let mut terms: Vec<Interval> = Vec::with_capacity(self.terms.len());
+        let mut operands: Vec<Interval> = Vec::new();
+        for (term, known) in &self.terms {
+            let value = match term {
+                Term::Leaf(node) if *node == leaf => interval,
+                Term::Leaf(_) => *known,
+                Term::Apply(op, ids) => {
+                    operands.clear();
+                    operands.extend(ids.iter().map(|&id| self.get(id).interval(|term| terms[term])));
+                    Interval::eval(*op, &operands)
+                }
+            };
+            terms.push(value);
+        }
+        Narrowed { forms: self, terms }
+    }
+
+    /// Every form so far.
+    pub fn all(&self) -> impl Iterator<Item = &Form> {
+        self.forms.iter()
+    }
+
+    /// The leaf that a term is.
+    pub fn leaf_of(&self, term: usize) -> Option<Node> {
+        match &self.terms[term].0 {
+            Term::Leaf(node) => Some(*node),
+            Term::Apply(..) => None,
         }
     }
 

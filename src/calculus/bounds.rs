@@ -33,6 +33,17 @@ impl Bounds {
         bounds
     }
 
+    /// At t = 0, with the parameters and the data of the agents that there are.
+    pub fn of_population(system: &System) -> Self {
+        let mut bounds = Self::at_start(system).with_params(system);
+        for (number, discretes) in hulls(system, |agent| &agent.discretes).into_iter().enumerate() {
+            for (k, hull) in discretes.into_iter().enumerate() {
+                bounds.aux[number][system.types[number].layout.discrete(k)] = hull;
+            }
+        }
+        bounds
+    }
+
     /// The bounds with the parameters of the agents that there are.
     pub fn with_params(&self, system: &System) -> Self {
         let mut bounds = self.clone();

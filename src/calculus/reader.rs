@@ -2,9 +2,9 @@
 
 use rustc_hash::FxHashMap;
 
+use crate::calculus::bounds::Bounds;
+use crate::calculus::form::{FormId, Forms};
 use crate::calculus::graph::{Node, NodeId};
-use crate::calculus::lint::bounds::Bounds;
-use crate::calculus::lint::form::{FormId, Forms};
 use crate::calculus::system::{Frame, FunctionId, Layout, ModeSystem, Slot, System};
 use crate::math::Interval;
 

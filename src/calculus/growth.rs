@@ -3,8 +3,8 @@
 //! Found by going round all actions until nothing grows. What still grows after a few rounds counts as unbounded to
 //! that side.
 
-use crate::calculus::lint::bounds::{Bounds, REAL};
-use crate::calculus::lint::reader::Reader;
+use crate::calculus::bounds::{Bounds, REAL};
+use crate::calculus::reader::Reader;
 use crate::calculus::system::{ActionList, ActionStep, FunctionId, System, Target};
 use crate::math::Interval;
 
@@ -13,7 +13,16 @@ const ROUNDS_MAX: usize = 4;
 
 /// The bounds that hold in every run of this system, with whatever parameters its agents have.
 pub fn bounds(system: &System) -> Bounds {
-    let mut bounds = Bounds::at_start(system);
+    grown(system, Bounds::at_start(system))
+}
+
+/// The bounds that hold in every run with the agents that there are at t = 0, and no others: none are created later.
+pub fn bounds_of_population(system: &System) -> Bounds {
+    grown(system, Bounds::of_population(system))
+}
+
+/// What holds from the start, widened by all that actions can give.
+fn grown(system: &System, mut bounds: Bounds) -> Bounds {
     for round in 0.. {
         let before = bounds.aux.clone();
         go_round(system, &mut bounds);
