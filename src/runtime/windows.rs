@@ -23,6 +23,8 @@ const GROW: f64 = 2.0;
 const HOT_WANTED: f64 = 0.02;
 /// A window in which agents take more steps than this is long enough, too.
 const STEPS_WANTED: f64 = 8.0;
+/// One in which they take fewer is too short, however many are hot.
+const STEPS_LEAST: f64 = 0.5;
 
 impl Engine<'_, '_> {
     /// Runs to the end.
@@ -35,9 +37,14 @@ impl Engine<'_, '_> {
             let from = self.present.time;
             if self.has_fields() && self.neighbours.until <= from {
                 let span = self.next_span();
-                for instance in self.list_pairs(from + span)? {
+                let begun = std::time::Instant::now();
+                let new = self.list_pairs((from + span).min(self.time_end))?;
+                let t1 = begun.elapsed();
+                let n_new = new.len();
+                for instance in new {
                     self.meet(instance);
                 }
+                if std::env::var("DBG").is_ok() { eprintln!("list at {from} span {span} new {n_new} listed {} list {:?} meet {:?}", self.neighbours.fields[0].listed.len(), t1, begun.elapsed()-t1); }
             }
             let mut until = self.time_end;
             if self.has_fields() {
@@ -47,7 +54,9 @@ impl Engine<'_, '_> {
                 until = until.min(from + length);
                 self.window_end = until;
                 let before = self.stepper.counts.steps;
+                let begun = std::time::Instant::now();
                 let n_hot = self.open_window(until);
+                if std::env::var("DBG").is_ok() { eprintln!("window at {from} to {until} hot {n_hot} steps {} open {:?}", self.stepper.counts.steps-before, begun.elapsed()); }
                 length = (length * self.growth(n_hot, before)).max(SHORTEST * self.horizon());
                 self.mind_steps()?;
             }
@@ -83,7 +92,8 @@ impl Engine<'_, '_> {
         let n = self.agents.len() as f64;
         let steps = (self.stepper.counts.steps - steps_before) as f64 / n;
         let hot = n_hot as f64 / n;
-        (HOT_WANTED / hot).min(STEPS_WANTED / steps).sqrt().clamp(1.0 / GROW, GROW)
+        let wanted = (HOT_WANTED / hot).min(STEPS_WANTED / steps).max(STEPS_LEAST / steps);
+        wanted.sqrt().clamp(1.0 / GROW, GROW)
     }
 
     /// Fails if the limit of steps has been passed.
@@ -100,7 +110,7 @@ impl Engine<'_, '_> {
     pub fn begin_lists(&mut self) -> Result<(), Failure> {
         if self.has_fields() {
             self.neighbours.span = FIRST_LIST * self.horizon();
-            self.list_pairs(self.neighbours.span)?;
+            self.list_pairs(self.neighbours.span.min(self.time_end))?;
         }
         Ok(())
     }
