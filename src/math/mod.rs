@@ -3,7 +3,8 @@
 //! In: nothing but numbers. Out: [`Op`], the table of operators whose [`Op::eval`] is *the* meaning that the
 //! interpreter, constant folding and machine code share bit for bit; [`elementary`], the functions behind it;
 //! [`Interval`], bounds on an operator over a box; [`runge_kutta`], the coefficients that steps are made of; [`draw`],
-//! random numbers; [`Scale`], the sizes of units; [`lanes`], the operators over columns.
+//! random numbers; [`Scale`], the sizes of units; [`lanes`], the operators over columns;
+//! [`Numbers`], a number for each of some agents.
 //! Promised: the same bits on every CPU and for every thread count, because no multiplication is fused into an addition
 //! unless it is written so, and the CPU's features choose how many lanes an instruction has, never which operations.
 

@@ -4,6 +4,7 @@
 //! agent has alone.
 
 use super::elementary;
+use super::lanes;
 use super::op::Op;
 
 /// How many agents are advanced at once.
@@ -98,16 +99,16 @@ impl Numbers for Wide {
     }
     fn apply(op: Op, [a, b, c]: [Self; 3]) -> Self {
         let mut result = a;
-        for lane in 0..N_LANES {
-            result.0[lane] = op.eval([a.0[lane], b.0[lane], c.0[lane]]);
+        match op.arity() {
+            1 => lanes::unary(op, &a.0, &mut result.0),
+            2 => lanes::binary(op, &a.0, &b.0, &mut result.0),
+            _ => lanes::select(&a.0, &b.0, &c.0, &mut result.0),
         }
         result
     }
     fn sin_cos(self) -> (Self, Self) {
         let (mut sine, mut cosine) = (self, self);
-        for lane in 0..N_LANES {
-            (sine.0[lane], cosine.0[lane]) = elementary::sin_cos(self.0[lane]);
-        }
+        lanes::sin_cos(&self.0, &mut sine.0, &mut cosine.0);
         (sine, cosine)
     }
 }

@@ -2,37 +2,7 @@
 
 use crate::codegen::series::SeriesTape;
 use crate::math::Wide;
-
-/// A set of instructions that lanes are advanced with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Level {
-    /// What every processor of the kind has.
-    Baseline,
-    /// Four lanes an instruction.
-    #[cfg(target_arch = "x86_64")]
-    Avx2,
-    /// Eight lanes an instruction.
-    #[cfg(target_arch = "x86_64")]
-    Avx512,
-}
-
-/// The best that this processor has.
-#[inline]
-fn level() -> Level {
-    #[cfg(target_arch = "x86_64")]
-    {
-        if is_x86_feature_detected!("avx512f")
-            && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512vl")
-        {
-            return Level::Avx512;
-        }
-        if is_x86_feature_detected!("avx2") {
-            return Level::Avx2;
-        }
-    }
-    Level::Baseline
-}
+use crate::math::lanes::{Level, Work};
 
 /// What the states of lanes are expanded from, and where to: see [`SeriesTape::expand_numbers`].
 struct Expansion<'a> {
@@ -44,23 +14,11 @@ struct Expansion<'a> {
     rows: &'a mut [Wide],
 }
 
-impl Expansion<'_> {
+impl Work for Expansion<'_> {
     #[inline(always)]
-    fn run(self) {
+    fn work(self) {
         let Self { tape, time, states, fixed, order, rows } = self;
         tape.expand_numbers(time, states, fixed, order, rows);
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512dq,avx512vl")]
-    fn run_avx512(self) {
-        self.run();
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn run_avx2(self) {
-        self.run();
     }
 }
 
@@ -81,23 +39,7 @@ impl SeriesTape {
     }
 
     /// [`SeriesTape::expand_numbers`] of lanes, in the widest instructions there are.
-    pub fn expand_wide(
-        &self,
-        time: Wide,
-        states: &[Wide],
-        fixed: &[Wide],
-        order: usize,
-        rows: &mut [Wide],
-    ) {
-        let expansion = Expansion { tape: self, time, states, fixed, order, rows };
-        match level() {
-            Level::Baseline => expansion.run(),
-            #[cfg(target_arch = "x86_64")]
-            // SAFETY: the processor has been found to have these instructions.
-            Level::Avx2 => unsafe { expansion.run_avx2() },
-            #[cfg(target_arch = "x86_64")]
-            // SAFETY: as above.
-            Level::Avx512 => unsafe { expansion.run_avx512() },
-        }
+    pub fn expand_wide(&self, time: Wide, states: &[Wide], fixed: &[Wide], order: usize, rows: &mut [Wide]) {
+        Level::best().run(Expansion { tape: self, time, states, fixed, order, rows });
     }
 }

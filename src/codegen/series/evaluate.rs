@@ -51,19 +51,20 @@ impl SeriesTape {
         assert!((1..=ORDER_MAX).contains(&order), "an order that no series has");
         let stride = order + 1;
         let mut work = Work { tape: self, time, states, fixed, stride, rows };
-        for instruction in &self.instructions[..self.cycle.start] {
-            work.run_whole(instruction);
-        }
-        for round in 0..=order {
-            for instruction in &self.instructions[self.cycle.clone()] {
-                let lag = instruction.lag as usize;
-                if round >= lag && round - lag < self.count(instruction, order) {
-                    work.run(instruction, round - lag);
+        let (before, rest) = self.instructions.split_at(self.cycle.start);
+        let (cycle, behind) = rest.split_at(self.cycle.len());
+        for (by_rounds, part) in [(false, before), (true, cycle), (false, behind)] {
+            // One loop for both orders, so that what it inlines is there once.
+            let (outer, inner) = if by_rounds { (stride, part.len()) } else { (part.len(), stride) };
+            for i in 0..outer {
+                for j in 0..inner {
+                    let (round, instruction) = if by_rounds { (i, &part[j]) } else { (j, &part[i]) };
+                    let m = round.wrapping_sub(instruction.lag as usize);
+                    if m < self.count(instruction, order) {
+                        work.run(instruction, m);
+                    }
                 }
             }
-        }
-        for instruction in &self.instructions[self.cycle.end..] {
-            work.run_whole(instruction);
         }
         for state in 0..self.n_states {
             let row = &mut work.rows[state * stride..(state + 1) * stride];
@@ -82,13 +83,6 @@ struct Work<'a, T> {
 }
 
 impl<T: Numbers> Work<'_, T> {
-    #[inline(always)]
-    fn run_whole(&mut self, instruction: &Instruction) {
-        for m in 0..self.tape.count(instruction, self.stride - 1) {
-            self.run(instruction, m);
-        }
-    }
-
     /// The coefficients of a row that can differ from 0; those not made yet hold anything.
     #[inline(always)]
     fn row(&self, row: RowId) -> &[T] {
@@ -180,11 +174,8 @@ impl<T: Numbers> Work<'_, T> {
                     root
                 } else {
                     let a = self.at(*a, m);
-                    let rest = if m == 1 {
-                        a
-                    } else {
-                        a.zip(square(&self.row(to)[1..m], m - 2), |a, sum| a - sum)
-                    };
+                    let rest =
+                        if m == 1 { a } else { a.zip(square(&self.row(to)[1..m], m - 2), |a, sum| a - sum) };
                     rest.zip(self.row(*inverse)[0], |rest, inverse| rest * inverse)
                 }
             }
@@ -202,10 +193,7 @@ impl<T: Numbers> Work<'_, T> {
                     let u = self.row(*u)[0];
                     match pair {
                         Pair::Circular => u.sin_cos(),
-                        Pair::Hyperbolic => (
-                            T::apply(Op::Sinh, [u; 3]),
-                            T::apply(Op::Cosh, [u; 3]),
-                        ),
+                        Pair::Hyperbolic => (T::apply(Op::Sinh, [u; 3]), T::apply(Op::Cosh, [u; 3])),
                     }
                 } else {
                     let (s, c) = (&self.row(to)[..m], &self.row(*cosine)[..m]);

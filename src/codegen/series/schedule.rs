@@ -125,8 +125,13 @@ pub fn order(instructions: &mut Vec<Instruction>, n_rows: usize) -> std::ops::Ra
     let last = peel(n, &backwards, &taken);
     last.iter().for_each(|&k| taken[k] = true);
     let middle = (0..n).filter(|&k| !taken[k]);
-    let sorted: Vec<Instruction> =
-        first.iter().copied().chain(middle).chain(last.iter().rev().copied()).map(|k| instructions[k]).collect();
+    let sorted: Vec<Instruction> = first
+        .iter()
+        .copied()
+        .chain(middle)
+        .chain(last.iter().rev().copied())
+        .map(|k| instructions[k])
+        .collect();
     *instructions = sorted;
     first.len()..n - last.len()
 }

@@ -175,7 +175,13 @@ mod tests {
             false
         }
 
-        fn series(&mut self, _t: f64, _x: &[f64], _order: usize, _rows: &mut crate::runtime::solve::method::SeriesRows) -> bool {
+        fn series(
+            &mut self,
+            _t: f64,
+            _x: &[f64],
+            _order: usize,
+            _rows: &mut crate::runtime::solve::method::SeriesRows,
+        ) -> bool {
             false
         }
     }

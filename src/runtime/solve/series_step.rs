@@ -30,7 +30,8 @@ pub fn reach<T: Numbers>(coefficients: &[T], n: usize, order: usize, accuracy: A
     }
     let (by_last, by_before) = (1.0 / order as f64, 1.0 / (order as f64 - 1.0));
     let doublings = last.zip(before, |last, before| {
-        let (last, before) = (-binary_logarithm(last) * by_last, (FALL - binary_logarithm(before)) * by_before);
+        let (last, before) =
+            (-binary_logarithm(last) * by_last, (FALL - binary_logarithm(before)) * by_before);
         (if last < before { last } else { before }) + SAFETY
     });
     doublings.zip(defined, |doublings, defined| power_of_two(doublings) + defined)
