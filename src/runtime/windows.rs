@@ -37,14 +37,10 @@ impl Engine<'_, '_> {
             let from = self.present.time;
             if self.has_fields() && self.neighbours.until <= from {
                 let span = self.next_span();
-                let begun = std::time::Instant::now();
                 let new = self.list_pairs((from + span).min(self.time_end))?;
-                let t1 = begun.elapsed();
-                let n_new = new.len();
                 for instance in new {
                     self.meet(instance);
                 }
-                if std::env::var("DBG").is_ok() { eprintln!("list at {from} span {span} new {n_new} listed {} list {:?} meet {:?}", self.neighbours.fields[0].listed.len(), t1, begun.elapsed()-t1); }
             }
             let mut until = self.time_end;
             if self.has_fields() {
@@ -54,9 +50,7 @@ impl Engine<'_, '_> {
                 until = until.min(from + length);
                 self.window_end = until;
                 let before = self.stepper.counts.steps;
-                let begun = std::time::Instant::now();
                 let n_hot = self.open_window(until);
-                if std::env::var("DBG").is_ok() { eprintln!("window at {from} to {until} hot {n_hot} steps {} open {:?}", self.stepper.counts.steps-before, begun.elapsed()); }
                 length = (length * self.growth(n_hot, before)).max(SHORTEST * self.horizon());
                 self.mind_steps()?;
             }
