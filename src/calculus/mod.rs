@@ -12,7 +12,7 @@ mod relation;
 pub mod system;
 mod simplify;
 pub mod evaluate;
-mod derive;
+pub(crate) mod derive;
 pub mod print;
 mod error;
 mod draft;

@@ -83,8 +83,8 @@ pub(super) struct EngineArguments {
     /// The form of the engine: `plain` (the default, until `fast` is built)
     #[arg(long, value_enum, default_value_t)]
     pub(super) engine: Engine,
-    /// The method of integration: `auto` (for now tsit5), `tsit5` (Runge-Kutta, orders 5 and 4), `adams`
-    /// (predictor-corrector, orders 3 and 4); not built yet: `taylor`, `stiff`
+    /// The method of integration: `auto` (for now tsit5), `taylor` (Taylor series, order by the
+    /// tolerance), `tsit5` (Runge-Kutta, orders 5 and 4), `adams` (predictor-corrector, orders 3 and 4); not built yet: `stiff`
     #[arg(long, value_name = "METHOD", value_parser = integrator)]
     pub(super) integrator: Option<Integrator>,
     /// What evaluates the equations: machine code, or the interpreter (the same bits)

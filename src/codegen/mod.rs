@@ -5,6 +5,7 @@
 //! and as machine code, those of `Op::eval` in the order of the graph; the same system gives the same code.
 
 mod tape;
+pub mod series;
 mod interpret;
 mod emit;
 mod step;
@@ -17,10 +18,11 @@ pub mod trace;
 use std::time::Instant;
 
 use crate::base::Diagnostic;
-use crate::calculus::system::System;
+use crate::calculus::system::{AgentSystem, System};
 use crate::codegen::jit::Code;
 use crate::codegen::kernel::{Kernel, StepKernel};
 use crate::codegen::program::{Cost, Program};
+use crate::codegen::series::{NoSeries, SeriesTape};
 use crate::codegen::tape::Tape;
 
 /// What runs a kernel.
@@ -68,19 +70,45 @@ fn link(system: System, tapes: Vec<Tape>, code: Code, cost: Cost) -> Program {
     for (task, code) in code.steps {
         steps[task.ty][task.mode] = Some(StepKernel::new(&tapes[task.function], code));
     }
+    let series = series(&system, |_, _, found| found.ok());
     let kernels = tapes.into_iter().zip(code.kernels).map(|(tape, code)| Kernel::new(tape, code)).collect();
     let System { graph, functions, types, interactions, population, run } = system;
-    Program { graph, functions, types, interactions, population, run, kernels, steps, cost }
+    Program { graph, functions, types, interactions, population, run, kernels, steps, series, cost }
 }
 
-/// The tapes of all functions, as text (`hyc show --stage tape`).
+/// What is made of the series of each mode's flow, or of why there is none: for each type, for each mode.
+fn series<T>(
+    system: &System,
+    make: impl Fn(&AgentSystem, usize, Result<SeriesTape, NoSeries>) -> Option<T>,
+) -> Vec<Vec<Option<T>>> {
+    let of_mode = |agent: &AgentSystem, mode: usize| {
+        let flow = agent.modes[mode].flow.as_ref()?;
+        let found = match flow.couples[..] {
+            [] => series::record(&system.graph, &system.functions[flow.rates].outputs),
+            [..] => Err(NoSeries::ReadsOthers),
+        };
+        make(agent, mode, found)
+    };
+    let of_type = |agent: &AgentSystem| (0..agent.modes.len()).map(|mode| of_mode(agent, mode)).collect();
+    system.types.iter().map(of_type).collect()
+}
+
+/// The tapes of all functions and the series of all flows, as text (`hyc show --stage tape`).
 pub fn dump_tape(system: &System) -> String {
     let tapes = record(system);
     let listings = system.functions.iter().zip(&tapes).map(|(function, tape)| {
         let (n, m) = (tape.instructions.len(), tape.n_registers);
         format!("{}: {n} instructions, {m} registers\n{tape}", function.name)
     });
-    listings.collect::<Vec<_>>().join("\n")
+    let series = series(system, |agent, mode, found| {
+        let flow = agent.modes[mode].flow.as_ref()?;
+        let name = &system.functions[flow.rates].name;
+        Some(match found {
+            Ok(tape) => format!("{name} series: {} recurrences\n{tape}", tape.instructions.len()),
+            Err(reason) => format!("{name} has no series: {reason}\n"),
+        })
+    });
+    listings.chain(series.into_iter().flatten().flatten()).collect::<Vec<_>>().join("\n")
 }
 
 /// The Cranelift IR of all functions, before optimisation, as text (`hyc show --stage clif`): the same on every host.

@@ -11,6 +11,7 @@ pub use crate::calculus::system::{
     TransitionSystem, Trigger, VarRef,
 };
 use crate::codegen::kernel::{Kernel, StepKernel};
+use crate::codegen::series::SeriesTape;
 
 /// A model, compiled.
 #[derive(Debug)]
@@ -31,6 +32,8 @@ pub struct Program {
     pub kernels: Vec<Kernel>,
     /// Whole Runge-Kutta steps: for each type, for each mode, where the flow reads no foreign state (and is compiled).
     pub steps: Vec<Vec<Option<StepKernel>>>,
+    /// Taylor series: for each type, for each mode, where the flow has one.
+    pub series: Vec<Vec<Option<SeriesTape>>>,
     /// What compilation took.
     pub cost: Cost,
 }

@@ -6,7 +6,7 @@ pub enum Integrator {
     /// What suits the model; for now [`Integrator::Tsit5`].
     #[default]
     Auto,
-    /// Taylor series; not built yet.
+    /// Taylor series of an order chosen from the tolerance.
     Taylor,
     /// Tsitouras' explicit Runge-Kutta pair of orders 5 and 4.
     Tsit5,
@@ -29,8 +29,8 @@ impl Integrator {
     /// Whether it is built.
     pub fn is_built(self) -> bool {
         match self {
-            Integrator::Auto | Integrator::Tsit5 | Integrator::Adams => true,
-            Integrator::Taylor | Integrator::Stiff => false,
+            Integrator::Auto | Integrator::Taylor | Integrator::Tsit5 | Integrator::Adams => true,
+            Integrator::Stiff => false,
         }
     }
 

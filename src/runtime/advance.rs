@@ -88,7 +88,7 @@ impl Stepper {
     ) -> Self {
         let counts = Counts { steps_of_type: vec![0; agents.program.types.len()], ..Counts::default() };
         Self {
-            integrator: Integrator::new(solve::method(method), accuracy, time_end),
+            integrator: Integrator::new(solve::method(method, accuracy), accuracy, time_end),
             accuracy,
             pieces_max: limits.pieces_max,
             x: Vec::new(),

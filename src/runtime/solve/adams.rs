@@ -174,6 +174,16 @@ mod tests {
         fn tsit5(&mut self, _t: f64, _h: f64, _rows: crate::runtime::solve::method::Tsit5Rows<'_>) -> bool {
             false
         }
+
+        fn series(
+            &mut self,
+            _t: f64,
+            _x: &[f64],
+            _order: usize,
+            _rows: &mut crate::runtime::solve::method::SeriesRows,
+        ) -> bool {
+            false
+        }
     }
 
     /// A step from x = 2: the trial, and the dense output.

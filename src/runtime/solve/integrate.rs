@@ -125,9 +125,9 @@ impl Integrator {
     ) -> Result<Stretch, Stuck> {
         self.trial.resize(x.len());
         self.begin(t, x, integration, flow)?;
-        let mut h = match integration.h {
-            Some(h) => h,
-            None => self.first_step(t, x, integration, flow),
+        let mut h = match (self.method.reach(t, x, self.accuracy, flow), integration.h) {
+            (Some(h), _) | (None, Some(h)) => h,
+            (None, None) => self.first_step(t, x, integration, flow),
         };
         loop {
             let left = self.stop - t;
@@ -167,6 +167,7 @@ impl Integrator {
         match integration.attempts.back() {
             Some(last) if !integration.is_fresh() => {
                 let start = Start { t, h: last.h, x, past: &integration.past };
+                self.method.reach(t, x, self.accuracy, flow);
                 self.method.step(&start, flow, &mut self.trial);
             }
             Some(_) | None => flow.rates(t, x, &mut self.trial.rates),

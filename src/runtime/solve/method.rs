@@ -4,7 +4,7 @@
 //! restarts an integration clears it. Whether a trial is good enough, and how long the next one is, is not for the
 //! method to say ([`crate::runtime::solve::control`]).
 
-use crate::runtime::solve::control::Pace;
+use crate::runtime::solve::control::{Accuracy, Pace};
 use crate::runtime::solve::segment::Segment;
 
 /// A right-hand side.
@@ -15,6 +15,19 @@ pub trait Flow {
     /// A whole step of Tsitouras' pair as one function, with the bits of the plain one: fills in all but the first row of
     /// `k`, which is given. False, and nothing is done, where there is no such function.
     fn tsit5(&mut self, t: f64, h: f64, rows: Tsit5Rows<'_>) -> bool;
+
+    /// The Taylor coefficients of the solution through (t, x) up to `order`, in 1/s^k, as the first rows of
+    /// `rows.coefficients`: `order` + 1 for each state. False, and nothing is done, where the flow has no series.
+    fn series(&mut self, t: f64, x: &[f64], order: usize, rows: &mut SeriesRows) -> bool;
+}
+
+/// What a series is expanded in; kept from step to step.
+#[derive(Clone, Debug, Default)]
+pub struct SeriesRows {
+    /// The states' rows, then those that the flow needs.
+    pub coefficients: Vec<f64>,
+    /// What does not move.
+    pub fixed: Vec<f64>,
 }
 
 /// What a compiled step of Tsitouras' pair reads and fills in, for n equations.
@@ -85,6 +98,11 @@ pub trait Method {
 
     /// Arithmetic operations of a step for each equation, without the right-hand side, from this many rates of the past.
     fn operations(&self, n_known: usize) -> u64;
+
+    /// The longest step that the method would take, s, where it knows before it tries one; a step from here follows.
+    fn reach(&mut self, _t: f64, _x: &[f64], _accuracy: Accuracy, _flow: &mut dyn Flow) -> Option<f64> {
+        None
+    }
 
     /// Tries a step; `trial` has room for the equations.
     fn step(&mut self, start: &Start<'_>, flow: &mut dyn Flow, trial: &mut Trial);

@@ -8,6 +8,8 @@ pub mod control;
 pub mod method;
 pub mod tsit5;
 pub mod adams;
+pub mod series_step;
+pub mod taylor;
 pub mod integrate;
 mod bracket;
 pub mod roots;
@@ -16,7 +18,9 @@ pub mod step_select;
 pub mod extra_state;
 
 use adams::Adams;
+use control::Accuracy;
 use method::Method;
+use taylor::Taylor;
 use tsit5::Tsit5;
 
 /// A method's name.
@@ -26,13 +30,16 @@ pub enum MethodName {
     Tsit5,
     /// [`Adams`].
     Adams,
+    /// [`Taylor`].
+    Taylor,
 }
 
-/// The method of this name.
-pub fn method(name: MethodName) -> Box<dyn Method> {
+/// The method of this name for an accuracy.
+pub fn method(name: MethodName, accuracy: Accuracy) -> Box<dyn Method> {
     match name {
         MethodName::Tsit5 => Box::<Tsit5>::default(),
         MethodName::Adams => Box::<Adams>::default(),
+        MethodName::Taylor => Box::new(Taylor::new(accuracy.tolerance)),
     }
 }
 

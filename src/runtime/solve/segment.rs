@@ -21,7 +21,7 @@ pub struct Segment {
 }
 
 /// The most coefficients of one state.
-const N_MAX: usize = 16;
+pub const N_MAX: usize = 24;
 
 impl Segment {
     /// A segment at rest at one instant: the state does not move from it.

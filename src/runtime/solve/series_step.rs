@@ -1,0 +1,113 @@
+//! How far a Taylor series reaches: the step for which its last terms are as small as the accuracy asks.
+//!
+//! With s_i = absolute + tolerance |x_i| and r_k = max over i of |c_ik| / s_i, the step is the largest h such that
+//! `r_p h^p <= 1` and `r_(p-1) h^(p-1) <= e^2` (Jorba & Zou, Experimental Mathematics 14, 2005, section 3.2: terms fall by
+//! e^2 an order at the step that costs least), and a little less. Logarithms are within 1/100, which is enough for a step:
+//! whether it was good is asked afterwards. One source serves one agent and lanes, with the same bits.
+
+use crate::math::Numbers;
+use crate::runtime::solve::control::Accuracy;
+
+/// log2 of the factor by which terms fall from order to order: e^2.
+const FALL: f64 = 2.0 * std::f64::consts::LOG2_E;
+/// By how much terms may fall short of that: e^-2 of the term before the last is taken for an error.
+pub const FALLEN: f64 = 0.135_335_283_236_612_7;
+/// log2 of the share of the reach that is used.
+const SAFETY: f64 = -0.074;
+
+/// The step that the coefficients of `n` states allow, s: NaN where one is not finite. Each state has a row of `order` + 1.
+#[inline(always)]
+pub fn reach<T: Numbers>(coefficients: &[T], n: usize, order: usize, accuracy: Accuracy) -> T {
+    let (mut last, mut before) = (T::all(0.0), T::all(0.0));
+    let (mut defined, zero) = (T::all(0.0), T::all(0.0));
+    for row in coefficients.chunks_exact(order + 1).take(n) {
+        let share = row[0].map(|x| 1.0 / (accuracy.absolute + accuracy.tolerance * x.abs()));
+        last = last.zip(row[order].zip(share, |c, share| c.abs() * share), larger);
+        before = before.zip(row[order - 1].zip(share, |c, share| c.abs() * share), larger);
+        for c in row {
+            defined = defined.plus_product(c, &zero);
+        }
+    }
+    let (by_last, by_before) = (1.0 / order as f64, 1.0 / (order as f64 - 1.0));
+    let doublings = last.zip(before, |last, before| {
+        let (last, before) =
+            (-binary_logarithm(last) * by_last, (FALL - binary_logarithm(before)) * by_before);
+        (if last < before { last } else { before }) + SAFETY
+    });
+    doublings.zip(defined, |doublings, defined| power_of_two(doublings) + defined)
+}
+
+/// Order of the series for a tolerance: Jorba & Zou's 1 - ln(tolerance) / 2, and two more.
+pub fn order(tolerance: f64, highest: usize) -> usize {
+    let fitting = (1.0 - 0.5 * crate::math::elementary::log(tolerance)).ceil() + EXTRA;
+    (fitting.max(4.0) as usize).min(highest)
+}
+
+/// A step costs more than its series: what goes by the step is cheaper with fewer of them.
+const EXTRA: f64 = 2.0;
+
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// 2^52 + 2^51: a number of middle size added to it leaves its nearest integer in the lowest bits.
+const ROUNDER: f64 = 6_755_399_441_055_744.0;
+
+/// log2 of a number that is not negative, within 1/100; -1023 of zero, 1024 of infinity.
+#[inline(always)]
+fn binary_logarithm(x: f64) -> f64 {
+    let bits = x.to_bits();
+    let exponent = f64::from_bits((bits >> 52) | 0x4330_0000_0000_0000) - 4_503_599_627_370_496.0 - 1023.0;
+    let mantissa = f64::from_bits((bits & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000);
+    exponent + ((-1.0 / 3.0 * mantissa + 2.0) * mantissa - 5.0 / 3.0)
+}
+
+/// 2^x within 1/1000, for |x| below 1000.
+#[inline(always)]
+fn power_of_two(x: f64) -> f64 {
+    let rounded = x + ROUNDER;
+    let whole = f64::from_bits((rounded.to_bits() << 52).wrapping_add(0x3ff0_0000_0000_0000));
+    let rest = x - (rounded - ROUNDER);
+    whole * (((0.0558 * rest + 0.2402) * rest + 0.6931) * rest + 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cheap_logarithm_and_power_are_near() {
+        for k in -2000..2000 {
+            let x = 1.37_f64.powi(k / 2) * (1.0 + f64::from(k.rem_euclid(7)) / 7.0);
+            if x.is_normal() {
+                assert!((binary_logarithm(x) - x.log2()).abs() < 0.01, "log2 {x}");
+            }
+            let y = f64::from(k) / 13.0;
+            assert!((power_of_two(y) / y.exp2() - 1.0).abs() < 1e-3, "2^{y}");
+        }
+        assert_eq!(binary_logarithm(0.0), -1023.0 - (5.0 / 3.0 - 2.0 + 1.0 / 3.0));
+        assert!(power_of_two(binary_logarithm(0.0) / -4.0).is_finite());
+    }
+
+    #[test]
+    fn a_step_leaves_the_last_terms_within_the_accuracy_and_not_far_below_it() {
+        let accuracy = Accuracy { tolerance: 1e-8, absolute: 1e-6 };
+        for order in [6, 9, 12, 20] {
+            for rate in [1e-9_f64, 0.3, 7.0, 1e12] {
+                // e^(rate s) times 3: c_k = 3 rate^k / k!.
+                let mut c = vec![3.0];
+                for k in 1..=order {
+                    c.push(c[k - 1] * rate / k as f64);
+                }
+                let h = reach(&c, 1, order, accuracy);
+                let scale = accuracy.absolute + accuracy.tolerance * 3.0;
+                let share = |k: usize, allowed: f64| c[k] * h.powi(k as i32) / (scale * allowed);
+                let worst = share(order, 1.0).max(share(order - 1, 1.0 / FALLEN));
+                assert!(worst <= 1.0 && worst > 0.2, "order {order}, rate {rate}: {worst}");
+            }
+        }
+        let h = reach(&[1.0, 2.0, f64::NAN, 0.0, 0.0], 1, 4, accuracy);
+        assert!(h.is_nan());
+    }
+}

@@ -1,0 +1,107 @@
+//! Steps by Taylor series of the order that the tolerance asks for; where a flow has none, by Tsitouras' pair.
+//!
+//! The series is expanded before the step is chosen, and says how long it may be ([`crate::runtime::solve::series_step`]). It is
+//! the dense output too, and its value at the end is the new state. The error is the largest of three: the last term, the
+//! one before it less e^2, and h / (p + 1) times what the rates at the end differ from the slope of the series there. The last
+//! one costs an evaluation, and sees what a series cannot: that it was continued beyond a branch point, on which the
+//! flow has no analytic continuation (`x' = -sqrt(x)` at 0), and that its last terms vanish by chance.
+
+use crate::runtime::solve::control::{Accuracy, Pace};
+use crate::runtime::solve::method::{Flow, Method, SeriesRows, Start, Stretch, Trial};
+use crate::runtime::solve::segment::{N_MAX, Segment};
+use crate::runtime::solve::series_step::{self, FALLEN};
+use crate::runtime::solve::tsit5::{self, Tsit5};
+
+/// The most that the step of another method, should one follow, may be longer.
+const GROW: f64 = 6.0;
+
+/// The method.
+#[derive(Clone, Debug)]
+pub struct Taylor {
+    order: usize,
+    rows: SeriesRows,
+    /// Whether the step at hand goes by a series.
+    is_series: bool,
+    /// Of each state the terms of the last trial at its end: c_k h^k.
+    terms: Vec<f64>,
+    other: Tsit5,
+}
+
+impl Taylor {
+    /// The method for a tolerance.
+    pub fn new(tolerance: f64) -> Self {
+        Self {
+            order: series_step::order(tolerance, N_MAX - 1),
+            rows: SeriesRows::default(),
+            is_series: false,
+            terms: Vec::new(),
+            other: Tsit5::default(),
+        }
+    }
+}
+
+impl Method for Taylor {
+    fn order(&self) -> f64 {
+        tsit5::ORDER
+    }
+
+    fn depth(&self) -> usize {
+        1
+    }
+
+    /// Powers and terms, their sum, the slope, the error 7 and its norm 4.
+    fn operations(&self, n_known: usize) -> u64 {
+        if self.is_series { 5 * self.order as u64 + 11 } else { self.other.operations(n_known) }
+    }
+
+    fn reach(&mut self, t: f64, x: &[f64], accuracy: Accuracy, flow: &mut dyn Flow) -> Option<f64> {
+        self.is_series = flow.series(t, x, self.order, &mut self.rows);
+        if self.is_series {
+            let h = series_step::reach(&self.rows.coefficients, x.len(), self.order, accuracy);
+            self.is_series = h > 0.0;
+            return self.is_series.then_some(h);
+        }
+        None
+    }
+
+    fn step(&mut self, start: &Start<'_>, flow: &mut dyn Flow, trial: &mut Trial) {
+        if !self.is_series {
+            return self.other.step(start, flow, trial);
+        }
+        let &Start { t, h, x, .. } = start;
+        let n_terms = self.order + 1;
+        self.terms.clear();
+        for (i, row) in self.rows.coefficients.chunks_exact(n_terms).take(x.len()).enumerate() {
+            let mut power = 1.0;
+            for c in row {
+                self.terms.push(c * power);
+                power = f64::min(power * h, f64::MAX);
+            }
+            let terms = &self.terms[i * n_terms..];
+            trial.x_new[i] = terms.iter().rev().fold(0.0, |sum, term| sum + term);
+        }
+        flow.rates(t + h, &trial.x_new, &mut trial.rates);
+        for (i, terms) in self.terms.chunks_exact(n_terms).enumerate() {
+            let slope = (1..n_terms).rev().fold(0.0, |sum, k| sum + k as f64 * terms[k]);
+            let defect = (h * trial.rates[i] - slope).abs() / n_terms as f64;
+            let last = terms[n_terms - 1].abs().max(FALLEN * terms[n_terms - 2].abs());
+            trial.error[i] = last.max(defect);
+        }
+        trial.pace = Pace::Free { order: self.order as f64, grow: GROW };
+    }
+
+    fn dense(&self, stretch: &Stretch, x: &[f64], first: usize, segment: &mut Segment) {
+        if !self.is_series {
+            return self.other.dense(stretch, x, first, segment);
+        }
+        let &Stretch { t, h, end } = stretch;
+        let n_terms = self.order + 1;
+        let own = || self.terms.chunks_exact(n_terms).skip(first).take(x.len());
+        let used = |terms: &[f64]| terms.iter().rposition(|term| *term != 0.0).map_or(1, |last| last + 1);
+        let n_used = own().map(used).max().unwrap_or(1);
+        let coefficients = segment.reset(t, h, end, n_used, x.len());
+        for (c, terms) in coefficients.chunks_exact_mut(n_used).zip(own()) {
+            c.copy_from_slice(&terms[..n_used]);
+        }
+    }
+}
