@@ -5,6 +5,7 @@
 //! and as machine code, those of `Op::eval` in the order of the graph; the same system gives the same code.
 
 mod tape;
+pub mod block;
 mod interpret;
 mod emit;
 mod step;
