@@ -2,7 +2,7 @@
 //!
 //! In: a [`Tape`], the columns of the agents as [`Block`]s. Out: a [`Block`] for each output, and whole steps of
 //! [`TSIT5`] in the order of operations of `math::runge_kutta`. What a scalar instruction costs by being looked at is
-//! shared by 32 lanes, and `math::lanes` has the CPU's widest instructions: about a quarter of machine code's time for a lane.
+//! shared by 32 lanes, and `math::lanes` has the CPU's widest instructions.
 //! Loads and constants are operands of their own; sine and cosine of one angle are one instruction. Nothing is allocated once
 //! the scratch space has the size of the longest tape. Lanes do not know each other: those without an agent may hold anything.
 
