@@ -6,7 +6,9 @@
 //! full of NaN.
 
 use std::cell::RefCell;
+use std::sync::OnceLock;
 
+use crate::codegen::block::{Block, BlockScratch, BlockStep, BlockTape, BlockView};
 use crate::codegen::interpret;
 use crate::codegen::jit::{KernelCode, StepCode, StepRows};
 use crate::codegen::tape::{Instruction, Row, Tape};
@@ -133,6 +135,8 @@ pub struct Kernel {
     reads: Reads,
     operations: u64,
     code: Option<KernelCode>,
+    /// Made when a block is evaluated for the first time.
+    block: OnceLock<BlockTape>,
 }
 
 impl Kernel {
@@ -140,7 +144,7 @@ impl Kernel {
     pub(super) fn new(tape: Tape, code: Option<KernelCode>) -> Self {
         let is_applied = |instruction: &&Instruction| matches!(instruction, Instruction::Apply { .. });
         let operations = tape.instructions.iter().filter(is_applied).count() as u64;
-        Self { reads: Reads::of(&tape), operations, tape, code }
+        Self { reads: Reads::of(&tape), operations, tape, code, block: OnceLock::new() }
     }
 
     /// Computes the outputs, the same bits on every back end. `out` must hold at least as many as there are.
@@ -153,6 +157,42 @@ impl Kernel {
             Some(code) => unsafe { code.call(self.reads.slots.len(), slots, time, out) },
             None => interpret_numbers(&self.tape, slots, time, out),
         }
+    }
+
+    /// Computes the outputs of 32 agents, lane by lane the bits of [`eval`](Self::eval).
+    ///
+    /// `out` must hold at least as many blocks as there are outputs. Panics if a column that is read is missing.
+    pub fn eval_block(
+        &self,
+        slots: &[BlockView<'_>],
+        time: &Block,
+        scratch: &mut BlockScratch,
+        out: &mut [Block],
+    ) {
+        assert!(out.len() >= self.tape.outputs.len(), "no room for the kernel's outputs");
+        self.block().eval(slots, time, scratch, out);
+    }
+
+    /// A step of 32 agents whose rates this kernel computes, lane by lane the bits of [`StepKernel::step`]: each lane from
+    /// its own time, s, of its own length `h`, s.
+    ///
+    /// Slot 0 holds the n states; of the other slots only auxiliary columns are read.
+    pub fn step_block(
+        &self,
+        slots: &[BlockView<'_>],
+        time: &Block,
+        h: &Block,
+        scratch: &mut BlockScratch,
+        to: BlockStep<'_>,
+    ) {
+        let n = self.tape.outputs.len();
+        let room = to.k.len() >= 7 * n && to.x_new.len() >= n && to.err.len() >= n;
+        assert!(room, "no room for the step");
+        self.block().step(slots, time, h, scratch, to);
+    }
+
+    fn block(&self) -> &BlockTape {
+        self.block.get_or_init(|| BlockTape::new(&self.tape))
     }
 
     /// Bounds the outputs: each contains what `eval` gives for every member of the boxes at every time in `time`.

@@ -6,6 +6,7 @@
 
 mod tape;
 pub mod series;
+pub mod block;
 mod interpret;
 mod emit;
 mod step;

@@ -7,6 +7,7 @@ mod model;
 mod calculus;
 mod codegen_systems;
 mod codegen_bits;
+mod codegen_blocks;
 mod codegen_program;
 mod cli;
 mod cli_warnings;

@@ -1,4 +1,6 @@
 //! Every operator over lanes gives the bits of `Op::eval`, at every level that this CPU has, whatever stands in the other lanes.
+//!
+//! Unoptimised loops go lane by lane even where AVX is allowed: `cargo test --release --lib lanes` compares vectors.
 
 use crate::math::Op;
 use crate::math::elementary;
