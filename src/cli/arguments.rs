@@ -83,8 +83,8 @@ pub(super) struct EngineArguments {
     /// The form of the engine: `plain` (the default, until `fast` is built)
     #[arg(long, value_enum, default_value_t)]
     pub(super) engine: Engine,
-    /// The method of integration: `auto` (for now tsit5), `tsit5` (Runge-Kutta, orders 5 and 4), `adams`
-    /// (predictor-corrector, orders 3 and 4); not built yet: `taylor`, `stiff`
+    /// The method of integration: `auto` (tsit5, and stiff for agents in modes that are), `tsit5` (Runge-Kutta, orders 5
+    /// and 4), `adams` (predictor-corrector, orders 3 and 4), `stiff` (Rodas5P, orders 5 and 4); not built yet: `taylor`
     #[arg(long, value_name = "METHOD", value_parser = integrator)]
     pub(super) integrator: Option<Integrator>,
     /// What evaluates the equations: machine code, or the interpreter (the same bits)
@@ -303,7 +303,7 @@ pub(super) enum Stage {
 
 fn integrator(text: &str) -> Result<Integrator, String> {
     let named = Integrator::NAMED.iter().find(|(name, _)| *name == text);
-    named.map(|(_, integrator)| *integrator).ok_or("write auto, tsit5 or adams".into())
+    named.map(|(_, integrator)| *integrator).ok_or("write auto, tsit5, adams or stiff".into())
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {

@@ -22,7 +22,7 @@ use crate::runtime::population::Agents;
 use crate::runtime::present::{Depth, Present};
 use crate::runtime::record::Recorder;
 use crate::runtime::repetition::Repetitions;
-use crate::runtime::solve::MethodName;
+use crate::runtime::solve::{MethodName, Methods};
 use crate::runtime::solve::control::Accuracy;
 
 /// A time at which something named by a number is due; void if the version is not that of the thing any more.
@@ -150,7 +150,7 @@ impl<'p, 'o> Engine<'p, 'o> {
         Ok(Self {
             program,
             present: Present::new(&agents),
-            stepper: Stepper::new(&agents, method(run.integrator), accuracy, time_end, limits),
+            stepper: Stepper::new(&agents, methods(run.integrator), accuracy, time_end, limits),
             curves: CurveRows::new(&agents),
             enclosures: Enclosures::new(&agents, accuracy),
             recorder: Recorder::new(program, time_end),
@@ -240,12 +240,14 @@ impl<'p, 'o> Engine<'p, 'o> {
                     Origin::Claim(_) => None,
                 }
             });
+        let methods = self.stepper.steps_of_methods().into_iter().map(|(name, n)| (name.name().to_string(), n));
         let stats = Stats {
             events: self.n_events,
             steps: counts.steps,
             rejected: counts.rejected,
             starts: counts.starts,
             rhs_evaluations: counts.rhs_evaluations + self.present.rhs_evaluations,
+            jacobians: counts.jacobians,
             guard_evaluations: self.curves.evaluations,
             guard_ranges: self.curves.ranges + self.enclosures.ranges,
             pairs_listed: self.guards.n_pairs,
@@ -259,6 +261,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             misses: None,
             types: types.collect(),
             transitions: labels.collect(),
+            methods: methods.collect(),
         };
         Outcome {
             end,
@@ -311,13 +314,13 @@ impl<'p, 'o> Engine<'p, 'o> {
     }
 }
 
-/// The method that a setting stands for.
-fn method(integrator: Integrator) -> MethodName {
-    match integrator.settled() {
-        Integrator::Adams => MethodName::Adams,
-        Integrator::Tsit5 => MethodName::Tsit5,
-        Integrator::Auto | Integrator::Taylor | Integrator::Stiff => {
-            unreachable!("the model has been refused, or the setting settled")
-        }
+/// The methods that a setting stands for.
+fn methods(integrator: Integrator) -> Methods {
+    match integrator {
+        Integrator::Auto => Methods::Automatic(MethodName::Tsit5),
+        Integrator::Adams => Methods::One(MethodName::Adams),
+        Integrator::Tsit5 => Methods::One(MethodName::Tsit5),
+        Integrator::Stiff => Methods::One(MethodName::Stiff),
+        Integrator::Taylor => unreachable!("the model has been refused"),
     }
 }

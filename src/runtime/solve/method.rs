@@ -5,6 +5,7 @@
 //! method to say ([`crate::runtime::solve::control`]).
 
 use crate::runtime::solve::control::Pace;
+use crate::runtime::solve::jacobian::Jacobian;
 use crate::runtime::solve::segment::Segment;
 
 /// A right-hand side.
@@ -15,6 +16,12 @@ pub trait Flow {
     /// A whole step of Tsitouras' pair as one function, with the bits of the plain one: fills in all but the first row of
     /// `k`, which is given. False, and nothing is done, where there is no such function.
     fn tsit5(&mut self, t: f64, h: f64, rows: Tsit5Rows<'_>) -> bool;
+
+    /// df/dx at (t, x).
+    fn jacobian(&mut self, t: f64, x: &[f64], jacobian: &mut Jacobian);
+
+    /// df/dt at (t, x), the states held, into `rates`.
+    fn time_rates(&mut self, t: f64, x: &[f64], rates: &mut [f64]);
 }
 
 /// What a compiled step of Tsitouras' pair reads and fills in, for n equations.

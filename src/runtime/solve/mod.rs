@@ -5,9 +5,13 @@
 
 pub mod segment;
 pub mod control;
+pub mod jacobian;
 pub mod method;
 pub mod tsit5;
 pub mod adams;
+mod shifted;
+mod rodas5p;
+pub mod switch;
 pub mod integrate;
 mod bracket;
 pub mod roots;
@@ -17,6 +21,7 @@ pub mod extra_state;
 
 use adams::Adams;
 use method::Method;
+use rodas5p::Rodas5p;
 use tsit5::Tsit5;
 
 /// A method's name.
@@ -26,6 +31,37 @@ pub enum MethodName {
     Tsit5,
     /// [`Adams`].
     Adams,
+    /// [`Rodas5p`].
+    Stiff,
+}
+
+impl MethodName {
+    /// As users call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            MethodName::Tsit5 => "tsit5",
+            MethodName::Adams => "adams",
+            MethodName::Stiff => "stiff",
+        }
+    }
+}
+
+/// Which methods take the steps of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Methods {
+    /// One for all.
+    One(MethodName),
+    /// An explicit one, and [`MethodName::Stiff`] where a flow is stiff.
+    Automatic(MethodName),
+}
+
+impl Methods {
+    /// The one that begins.
+    pub fn first(self) -> MethodName {
+        match self {
+            Methods::One(name) | Methods::Automatic(name) => name,
+        }
+    }
 }
 
 /// The method of this name.
@@ -33,6 +69,7 @@ pub fn method(name: MethodName) -> Box<dyn Method> {
     match name {
         MethodName::Tsit5 => Box::<Tsit5>::default(),
         MethodName::Adams => Box::<Adams>::default(),
+        MethodName::Stiff => Box::<Rodas5p>::default(),
     }
 }
 
