@@ -12,11 +12,11 @@ agent Vessel {
   flow { a' = back*b*c - slow*a
          b' = slow*a - back*b*c - fast*b^2
          c' = fast*b^2 }
-  trace:   when c >= 0.01  { passed := passed + 1 }
-  half:    when a <= 0.5   { passed := passed + 1 }
-  starved: when b <= 1e-6  { passed := passed + 1 }
-  tenth:   when a <= 0.1   { passed := passed + 1 }
-  last:    when a <= 1e-4  { passed := passed + 1 }
+  trace:   when c >= 0.01         { passed := passed + 1 }
+  half:    when a <= 0.5          { passed := passed + 1 }
+  starved: when rising(b <= 1e-6) { passed := passed + 1 }
+  tenth:   when a <= 0.1          { passed := passed + 1 }
+  last:    when a <= 1e-4         { passed := passed + 1 }
 }
 
 system { vessel = Vessel() }

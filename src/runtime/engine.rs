@@ -22,8 +22,8 @@ use crate::runtime::population::Agents;
 use crate::runtime::present::{Depth, Present};
 use crate::runtime::record::Recorder;
 use crate::runtime::repetition::Repetitions;
-use crate::runtime::solve::{MethodName, Methods};
 use crate::runtime::solve::control::Accuracy;
+use crate::runtime::solve::{MethodName, Methods};
 
 /// A time at which something named by a number is due; void if the version is not that of the thing any more.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -240,7 +240,8 @@ impl<'p, 'o> Engine<'p, 'o> {
                     Origin::Claim(_) => None,
                 }
             });
-        let methods = self.stepper.steps_of_methods().into_iter().map(|(name, n)| (name.name().to_string(), n));
+        let methods =
+            self.stepper.steps_of_methods().into_iter().map(|(name, n)| (name.name().to_string(), n));
         let stats = Stats {
             events: self.n_events,
             steps: counts.steps,

@@ -9,6 +9,8 @@ pub mod jacobian;
 pub mod method;
 pub mod tsit5;
 pub mod adams;
+mod cuthill_mckee;
+mod banded;
 mod shifted;
 mod rodas5p;
 pub mod switch;

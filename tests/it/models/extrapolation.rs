@@ -30,7 +30,8 @@ impl<const N: usize> System<N> {
             let step = if last { until - t } else { h };
             let (x_new, error) = self.step(&x, step);
             let worst = (0..N).map(|i| error[i].abs() / (tolerance * (x_new[i].abs() + floor[i])));
-            let worst = worst.fold(0.0, |worst: f64, part| if part > worst || part.is_nan() { part } else { worst });
+            let worst =
+                worst.fold(0.0, |worst: f64, part| if part > worst || part.is_nan() { part } else { worst });
             let factor = (0.8 * worst.powf(-1.0 / ROWS as f64)).clamp(0.2, 3.0);
             h = step * if factor.is_nan() { 0.2 } else { factor };
             if worst <= 1.0 {
