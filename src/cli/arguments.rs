@@ -84,8 +84,9 @@ pub(super) struct EngineArguments {
     /// The form of the engine; both find the same events
     #[arg(long, value_enum, default_value_t)]
     pub(super) engine: Engine,
-    /// The method of integration: `auto` (for now tsit5), `taylor` (Taylor series, order by the
-    /// tolerance), `tsit5` (Runge-Kutta, orders 5 and 4), `adams` (predictor-corrector, orders 3 and 4); not built yet: `stiff`
+    /// The method of integration: `auto` (taylor, and stiff for agents in modes that are), `taylor` (Taylor series, order
+    /// by the tolerance), `tsit5` (Runge-Kutta, orders 5 and 4), `adams` (predictor-corrector, orders 3 and 4), `stiff`
+    /// (Rodas5P, orders 5 and 4)
     #[arg(long, value_name = "METHOD", value_parser = integrator)]
     pub(super) integrator: Option<Integrator>,
     /// What evaluates the equations: machine code, or the interpreter (the same bits)
@@ -314,7 +315,7 @@ pub(super) enum Stage {
 
 fn integrator(text: &str) -> Result<Integrator, String> {
     let named = Integrator::NAMED.iter().find(|(name, _)| *name == text);
-    named.map(|(_, integrator)| *integrator).ok_or("write auto, tsit5 or adams".into())
+    named.map(|(_, integrator)| *integrator).ok_or("write auto, tsit5, adams or stiff".into())
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {

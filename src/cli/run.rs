@@ -63,7 +63,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
         model: &name_of(&arguments.model),
         algorithm: algorithm.name(),
         engine: algorithm.form().name(),
-        integrator: program.run.integrator.settled().name(),
+        integrator: program.run.integrator.name(),
         backend: backend_name(arguments.engine.backend),
         threads: 1,
         tolerance: program.run.tolerance,

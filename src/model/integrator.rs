@@ -3,7 +3,7 @@
 /// A method of integration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
-    /// What suits the model; for now [`Integrator::Tsit5`].
+    /// What suits each agent and mode: [`Integrator::Tsit5`], and [`Integrator::Stiff`] where the flow is stiff.
     #[default]
     Auto,
     /// Taylor series of an order chosen from the tolerance.
@@ -12,7 +12,7 @@ pub enum Integrator {
     Tsit5,
     /// Adams' predictor-corrector of orders 3 and 4, as in Esposito & Kumar (2004).
     Adams,
-    /// An implicit method for stiff flows; not built yet.
+    /// Rodas5P, a linearly implicit method of orders 5 and 4 for stiff flows.
     Stiff,
 }
 
@@ -29,14 +29,8 @@ impl Integrator {
     /// Whether it is built.
     pub fn is_built(self) -> bool {
         match self {
-            Integrator::Auto | Integrator::Taylor | Integrator::Tsit5 | Integrator::Adams => true,
-            Integrator::Stiff => false,
+            Integrator::Auto | Integrator::Taylor | Integrator::Tsit5 | Integrator::Adams | Integrator::Stiff => true,
         }
-    }
-
-    /// What `auto` stands for.
-    pub fn settled(self) -> Integrator {
-        if self == Integrator::Auto { Integrator::Tsit5 } else { self }
     }
 
     /// The name that users give it.

@@ -170,7 +170,7 @@ impl<'a> Context<'a> {
                     ExprKind::Name(name) => format!("`{name}`"),
                     _ => "an expression".into(),
                 };
-                let (name, needs) = ("integrator".to_string(), "auto, taylor, tsit5 or adams");
+                let (name, needs) = ("integrator".to_string(), "auto, taylor, tsit5, adams or stiff");
                 self.report(RunError::OutOfRange { name, needs, found, span: value.span });
             }
         }

@@ -12,7 +12,7 @@ pub struct Report<'a> {
     pub algorithm: &'a str,
     /// `plain`.
     pub engine: &'a str,
-    /// `tsit5`, `adams`.
+    /// `auto`, `tsit5`, `adams`, `stiff`.
     pub integrator: &'a str,
     /// `jit`, `interp`.
     pub backend: &'a str,

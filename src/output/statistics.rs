@@ -29,6 +29,7 @@ pub fn statistics(report: &Report<'_>) -> String {
         "rejected": stats.rejected,
         "starts": stats.starts,
         "rhs_evaluations": stats.rhs_evaluations,
+        "jacobians": stats.jacobians,
         "guard_evaluations": stats.guard_evaluations,
         "guard_ranges": stats.guard_ranges,
         "pairs_listed": stats.pairs_listed,
@@ -40,8 +41,9 @@ pub fn statistics(report: &Report<'_>) -> String {
         "late_events": stats.misses.map(|misses| misses.late),
         "latest_event": stats.misses.map(|misses| misses.latest),
         "false_asserts": outcome.false_asserts.iter().map(|claim| false_assert(claim, report)).collect::<Vec<_>>(),
+        "methods": counts(&stats.methods),
         "types": types(report),
-        "transitions": transitions(report),
+        "transitions": counts(&stats.transitions),
         "functions": report.functions,
         "instructions": report.instructions,
         "code_bytes": report.code_bytes,
@@ -88,7 +90,6 @@ fn types(report: &Report<'_>) -> Value {
     Value::Object(of_type.collect::<Map<_, _>>())
 }
 
-fn transitions(report: &Report<'_>) -> Value {
-    let firings = report.outcome.stats.transitions.iter().map(|(label, count)| (label.clone(), json!(count)));
-    Value::Object(firings.collect::<Map<_, _>>())
+fn counts(named: &[(String, u64)]) -> Value {
+    Value::Object(named.iter().map(|(name, count)| (name.clone(), json!(count))).collect::<Map<_, _>>())
 }

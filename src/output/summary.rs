@@ -25,6 +25,10 @@ pub fn summary(report: &Report<'_>) -> String {
             counted(stats.rhs_evaluations, "right-hand side"),
         ),
     );
+    if let [_, (_, 1..)] = stats.methods[..] {
+        let by = stats.methods.iter().map(|(name, steps)| format!("{steps} by {name}"));
+        line(&mut text, format_args!("  steps: {}", by.collect::<Vec<_>>().join(", ")));
+    }
     fired(&mut text, report);
     if stats.undecided_roots > 0 {
         let roots = counted(stats.undecided_roots, "root");

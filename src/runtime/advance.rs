@@ -4,6 +4,8 @@
 //! are searched on the dense output, and the step is cut at the first of them. The lock changes when the group is next
 //! advanced, so that an event before the kink can still undo it.
 
+use rustc_hash::FxHashSet;
+
 use crate::codegen::program::{Atom, Kink, KinkKind, Relation};
 use crate::codegen::trace::Blame;
 use crate::runtime::detect::{AtomCurve, CurveRows};
@@ -15,7 +17,8 @@ use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::integrate::{Integrator, Stuck};
 use crate::runtime::solve::method::Stretch;
 use crate::runtime::solve::roots::{Known, Search, first_flip};
-use crate::runtime::solve::{self, MethodName};
+use crate::runtime::solve::switch::{Regime, Switch};
+use crate::runtime::solve::{MethodName, Methods};
 
 /// Counts of steps.
 #[derive(Clone, Debug, Default)]
@@ -24,10 +27,14 @@ pub struct Counts {
     pub steps: u64,
     /// Accepted, for each agent type.
     pub steps_of_type: Vec<u64>,
+    /// Those of them that the method for stiff flows took where there is a choice.
+    pub steps_stiff: u64,
     /// Rejected, one for each member.
     pub rejected: u64,
     /// Right-hand sides, one for each member.
     pub rhs_evaluations: u64,
+    /// Jacobians, one for each member.
+    pub jacobians: u64,
     /// Arithmetic operations: of the right-hand sides as their tapes have them, and of the method.
     pub operations: u64,
     /// Beginnings of an integration: at t = 0 and after every restart, one for each member.
@@ -69,6 +76,9 @@ pub enum Obstacle {
 /// Takes the steps; owns their scratch space.
 pub struct Stepper {
     integrator: Integrator,
+    methods: Methods,
+    /// The agents and modes whose flows were stiff when they last moved by them.
+    stiff: FxHashSet<(usize, usize)>,
     /// What steps are accepted by.
     pub accuracy: Accuracy,
     pieces_max: u32,
@@ -79,17 +89,19 @@ pub struct Stepper {
 }
 
 impl Stepper {
-    /// A stepper by this method up to `time_end`.
+    /// A stepper by these methods up to `time_end`.
     pub fn new(
         agents: &Agents<'_>,
-        method: MethodName,
+        methods: Methods,
         accuracy: Accuracy,
         time_end: f64,
         limits: &Limits,
     ) -> Self {
         let counts = Counts { steps_of_type: vec![0; agents.program.types.len()], ..Counts::default() };
         Self {
-            integrator: Integrator::new(solve::method(method, accuracy), accuracy, time_end),
+            integrator: Integrator::new(methods, accuracy, time_end),
+            methods,
+            stiff: FxHashSet::default(),
             accuracy,
             pieces_max: limits.pieces_max,
             x: Vec::new(),
@@ -133,6 +145,52 @@ impl Stepper {
 
     /// Takes a step that is good enough.
     fn accepted_step(&mut self, agents: &Agents<'_>, group: &mut Group) -> Result<Stretch, Stuck> {
+        if group.integration.is_fresh() {
+            self.recall(agents, group);
+        }
+        let before = group.integration.switch.regime;
+        let found = self.counted_step(agents, group);
+        if group.integration.switch.regime != before {
+            self.remember(agents, group);
+        }
+        found
+    }
+
+    /// In modes that its members were not in before, a group begins with the method that it last had there.
+    fn recall(&mut self, agents: &Agents<'_>, group: &mut Group) {
+        let modes = group.members.iter().map(|&agent| agents.agents[agent].mode);
+        if modes.clone().eq(group.modes.iter().copied()) {
+            return;
+        }
+        group.modes.clear();
+        group.modes.extend(modes);
+        let is_stiff = |(&agent, &mode): (&usize, &usize)| self.stiff.contains(&(agent, mode));
+        let any_stiff = !self.stiff.is_empty() && group.members.iter().zip(&group.modes).any(is_stiff);
+        group.integration.switch = Switch::to(if any_stiff { Regime::Stiff } else { Regime::Explicit });
+    }
+
+    /// Remembers which method a group has changed to.
+    fn remember(&mut self, agents: &Agents<'_>, group: &Group) {
+        for &agent in &group.members {
+            let key = (agent, agents.agents[agent].mode);
+            match group.integration.switch.regime {
+                Regime::Stiff => self.stiff.insert(key),
+                Regime::Explicit => self.stiff.remove(&key),
+            };
+        }
+    }
+
+    /// Accepted steps of each method, one for each member.
+    pub fn steps_of_methods(&self) -> Vec<(MethodName, u64)> {
+        let Counts { steps, steps_stiff, .. } = self.counts;
+        match self.methods {
+            Methods::One(name) => vec![(name, steps)],
+            Methods::Automatic(name) => vec![(name, steps - steps_stiff), (MethodName::Stiff, steps_stiff)],
+        }
+    }
+
+    /// Takes a step and counts what it takes.
+    fn counted_step(&mut self, agents: &Agents<'_>, group: &mut Group) -> Result<Stretch, Stuck> {
         let n_members = group.members.len() as u64;
         let (rejected, operations) = (self.integrator.rejected, self.integrator.operations);
         let found = self.with_flow(agents, group, |integrator, x, group, flow| {
@@ -159,6 +217,7 @@ impl Stepper {
         let mut flow = GroupFlow::new(agents, &members, &self.absent);
         let done = work(&mut self.integrator, &self.x, group, &mut flow);
         self.counts.rhs_evaluations += flow.evaluations;
+        self.counts.jacobians += flow.jacobians;
         self.counts.operations += flow.operations;
         group.members = members;
         done
@@ -174,6 +233,7 @@ impl Stepper {
             agent.states.copy_from_slice(&self.integrator.trial.x_new[first..first + n_states]);
             first += n_states;
             self.counts.steps += 1;
+            self.counts.steps_stiff += u64::from(self.integrator.regime() == Regime::Stiff);
             self.counts.steps_of_type[agent.ty] += 1;
         }
         self.integrator.keep(stretch, &mut group.integration);

@@ -25,8 +25,8 @@ use crate::runtime::present::{Depth, Present};
 use crate::runtime::reach::Reaches;
 use crate::runtime::record::Recorder;
 use crate::runtime::repetition::Repetitions;
-use crate::runtime::solve::MethodName;
 use crate::runtime::solve::control::Accuracy;
+use crate::runtime::solve::{MethodName, Methods};
 
 /// A time at which something named by a number is due; void if the version is not that of the thing any more.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -161,21 +161,22 @@ impl<'p, 'o> Engine<'p, 'o> {
         let accuracy = Accuracy { tolerance: run.tolerance, absolute: run.absolute.unwrap_or(run.tolerance) };
         let time_end = run.until.unwrap_or(f64::INFINITY);
         let agents = Agents::new(program);
-        let (listing, method) = match form {
-            Form::Fast => (Listing::Near, method(run.integrator)),
-            Form::Plain => (Listing::All, method(run.integrator)),
+        let methods = methods(run.integrator);
+        let listing = match form {
+            Form::Fast => Listing::Near,
+            Form::Plain => Listing::All,
         };
         let guards = Guards::new(&agents, listing, limits.guards_max)
             .map_err(|TooManyGuards { needed }| Reason::GuardLimit { needed, limit: limits.guards_max })?;
         Ok(Self {
             program,
             present: Present::new(&agents),
-            stepper: Stepper::new(&agents, method, accuracy, time_end, limits),
+            stepper: Stepper::new(&agents, methods, accuracy, time_end, limits),
             curves: CurveRows::new(&agents),
             enclosures: Enclosures::new(&agents, accuracy),
             reaches: Reaches::new(&agents, accuracy, time_end),
             neighbours: Neighbours::default(),
-            by_series: method == MethodName::Taylor,
+            by_series: methods.first() == MethodName::Taylor,
             hot: Vec::new(),
             window_end: f64::INFINITY,
             has_thawed: false,
@@ -266,12 +267,15 @@ impl<'p, 'o> Engine<'p, 'o> {
                     Origin::Claim(_) => None,
                 }
             });
+        let methods =
+            self.stepper.steps_of_methods().into_iter().map(|(name, n)| (name.name().to_string(), n));
         let stats = Stats {
             events: self.n_events,
             steps: counts.steps,
             rejected: counts.rejected,
             starts: counts.starts,
             rhs_evaluations: counts.rhs_evaluations + self.present.rhs_evaluations,
+            jacobians: counts.jacobians,
             guard_evaluations: self.curves.evaluations,
             guard_ranges: self.curves.ranges + self.enclosures.ranges + self.reaches.ranges,
             pairs_listed: self.guards.n_pairs,
@@ -286,6 +290,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             misses: None,
             types: types.collect(),
             transitions: labels.collect(),
+            methods: methods.collect(),
         };
         Outcome {
             end,
@@ -338,14 +343,13 @@ impl<'p, 'o> Engine<'p, 'o> {
     }
 }
 
-/// The method that a setting stands for.
-fn method(integrator: Integrator) -> MethodName {
-    match integrator.settled() {
-        Integrator::Adams => MethodName::Adams,
-        Integrator::Tsit5 => MethodName::Tsit5,
-        Integrator::Taylor => MethodName::Taylor,
-        Integrator::Auto | Integrator::Stiff => {
-            unreachable!("the model has been refused, or the setting settled")
-        }
+/// The methods that a setting stands for.
+fn methods(integrator: Integrator) -> Methods {
+    match integrator {
+        Integrator::Auto => Methods::Automatic(MethodName::Taylor),
+        Integrator::Adams => Methods::One(MethodName::Adams),
+        Integrator::Tsit5 => Methods::One(MethodName::Tsit5),
+        Integrator::Stiff => Methods::One(MethodName::Stiff),
+        Integrator::Taylor => Methods::One(MethodName::Taylor),
     }
 }

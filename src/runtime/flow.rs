@@ -4,6 +4,7 @@ use crate::codegen::kernel::AgentView;
 use crate::codegen::trace::{Blame, Point};
 use crate::runtime::population::{ABSENT, Agents, Slots};
 use crate::runtime::present::Views;
+use crate::runtime::solve::jacobian::Jacobian;
 use crate::runtime::solve::method::{Flow, SeriesRows, Tsit5Rows};
 
 /// Right-hand sides that a whole step of Tsitouras' pair evaluates.
@@ -19,6 +20,8 @@ pub struct GroupFlow<'a, 'p> {
     absent: &'a [f64],
     /// Right-hand sides evaluated, one for each member.
     pub evaluations: u64,
+    /// Jacobians evaluated, one for each member.
+    pub jacobians: u64,
     /// Arithmetic operations, as their tapes have them.
     pub operations: u64,
 }
@@ -27,11 +30,18 @@ impl<'a, 'p> GroupFlow<'a, 'p> {
     /// The flow of some agents that step together; `absent` is a row for those that are not there.
     pub fn new(agents: &'a Agents<'p>, members: &'a [usize], absent: &'a [f64]) -> Self {
         let slots = members.iter().map(|&agent| agents.slots(&agents.flow(agent).frame, &[agent])).collect();
-        Self { agents, members, slots, absent, evaluations: 0, operations: 0 }
+        Self { agents, members, slots, absent, evaluations: 0, jacobians: 0, operations: 0 }
     }
 }
 
 impl GroupFlow<'_, '_> {
+    /// Where the states of each member begin in the row of all.
+    fn firsts(&self) -> Vec<usize> {
+        let sizes = self.members.iter().map(|&agent| self.agents.agents[agent].states.len());
+        let begin = |first: &mut usize, n: usize| Some(std::mem::replace(first, *first + n));
+        sizes.scan(0, begin).collect()
+    }
+
     /// What the flow of member `k` reads.
     fn views<'b>(&'b self, k: usize, x: &'b [f64]) -> Views<'b> {
         if let [_] = self.members {
@@ -93,6 +103,14 @@ impl Flow for Witness<'_, '_, '_> {
     fn series(&mut self, _t: f64, _x: &[f64], _order: usize, _rows: &mut SeriesRows) -> bool {
         false
     }
+
+    fn jacobian(&mut self, t: f64, x: &[f64], jacobian: &mut Jacobian) {
+        self.flow.jacobian(t, x, jacobian);
+    }
+
+    fn time_rates(&mut self, t: f64, x: &[f64], rates: &mut [f64]) {
+        self.flow.time_rates(t, x, rates);
+    }
 }
 
 impl Flow for GroupFlow<'_, '_> {
@@ -138,6 +156,51 @@ impl Flow for GroupFlow<'_, '_> {
         tape.fix(|slot, column| views[slot as usize].aux[column as usize], &mut rows.fixed);
         tape.expand(t, x, &rows.fixed, order, &mut rows.coefficients);
         true
+    }
+
+    /// The blocks of the members' own Jacobians, each at the places of the agents in its slots.
+    fn jacobian(&mut self, t: f64, x: &[f64], jacobian: &mut Jacobian) {
+        jacobian.reset(x.len());
+        self.jacobians += self.members.len() as u64;
+        let firsts = self.firsts();
+        let mut values = Vec::new();
+        let mut operations = 0;
+        for (k, &agent) in self.members.iter().enumerate() {
+            let flow = self.agents.flow(agent);
+            let kernel = self.agents.program.kernel(flow.jacobian_values);
+            values.resize(flow.jacobian.len(), 0.0);
+            kernel.eval(&self.views(k, x), t, &mut values);
+            operations += kernel.operations();
+            for (entry, &value) in flow.jacobian.iter().zip(&values) {
+                // What is read of an agent that is absent, or of one that does not move with these, is no state here.
+                if let Ok(other) = self.members.binary_search(&self.slots[k][entry.slot]) {
+                    jacobian.push(firsts[k] + entry.row, firsts[other] + entry.column, value);
+                }
+            }
+        }
+        self.operations += operations;
+    }
+
+    /// The second rates of states that stand still.
+    fn time_rates(&mut self, t: f64, x: &[f64], rates: &mut [f64]) {
+        let still = vec![0.0; self.absent.len()];
+        let (mut first, mut operations) = (0, 0);
+        for (k, &agent) in self.members.iter().enumerate() {
+            let n = self.agents.agents[agent].states.len();
+            let flow = self.agents.flow(agent);
+            let own = &mut rates[first..first + n];
+            if self.agents.program.kernel(flow.rates).reads().time {
+                let kernel = self.agents.program.kernel(flow.accelerations);
+                let mut views = self.views(k, x);
+                views.iter_mut().filter(|view| view.rates.is_empty()).for_each(|view| view.rates = &still);
+                kernel.eval(&views, t, own);
+                operations += kernel.operations();
+            } else {
+                own.fill(0.0);
+            }
+            first += n;
+        }
+        self.operations += operations;
     }
 }
 

@@ -15,6 +15,8 @@ pub struct Group {
     pub clock: f64,
     /// What the integration of all members, one after the other, remembers.
     pub integration: Integration,
+    /// The modes of the members for which the integration has settled on a method; empty before its first step.
+    pub modes: Vec<usize>,
     /// Kinks that the last step ends at: agent, kink of its flow, change of its lock.
     pub kinks: Vec<KinkHit>,
     /// Changes whenever something that was derived from the group's future becomes void.

@@ -266,6 +266,8 @@ pub struct Stats {
     pub starts: u64,
     /// Evaluations of right-hand sides, one an agent.
     pub rhs_evaluations: u64,
+    /// Evaluations of Jacobians, one an agent: for stiff steps, and to tell whether a flow is stiff.
+    pub jacobians: u64,
     /// Evaluations of guard expressions at a point.
     pub guard_evaluations: u64,
     /// Evaluations of guard expressions over an interval.
@@ -288,6 +290,8 @@ pub struct Stats {
     pub types: Vec<TypeStats>,
     /// Per transition: label, firings.
     pub transitions: Vec<(String, u64)>,
+    /// Per method of integration: its name, accepted steps.
+    pub methods: Vec<(String, u64)>,
 }
 
 /// Events that a 2004 algorithm passes over, found by certified detection on the same trajectories.

@@ -31,6 +31,7 @@ mod closed_forms;
 mod bumper;
 mod accuracy;
 mod adams;
+mod stiff;
 mod paper;
 mod compare;
 mod differential;

@@ -10,6 +10,9 @@ mod collide_and_stick;
 mod billiards;
 mod epidemic;
 mod platoon;
+mod extrapolation;
+mod robertson;
+mod van_der_pol;
 
 use crate::harness::{Case, Ended, near};
 

@@ -139,6 +139,7 @@ fn at_end(x: f64, quartic: &[f64; 4]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::runtime::solve::jacobian::Jacobian;
 
     /// Unequal times of the past, newest first.
     const TIMES: [f64; 3] = [0.75, 0.45, 0.4];
@@ -183,6 +184,14 @@ mod tests {
             _rows: &mut crate::runtime::solve::method::SeriesRows,
         ) -> bool {
             false
+        }
+
+        fn jacobian(&mut self, _t: f64, _x: &[f64], jacobian: &mut Jacobian) {
+            jacobian.reset(1);
+        }
+
+        fn time_rates(&mut self, t: f64, _x: &[f64], rates: &mut [f64]) {
+            rates[0] = (1..self.0.len()).rev().fold(0.0, |sum, k| sum * t + k as f64 * self.0[k]);
         }
     }
 

@@ -1,5 +1,7 @@
 //! One step of an integration: tries by a method until the error is small enough.
 //!
+//! The method may change from step to step: the [`Switch`] of an integration says which takes the next.
+//!
 //! In: where the integration is, what is known of its past, the accuracy. Out: the stretch of the accepted step, with the
 //! new states in the trial; or why there is none.
 
@@ -7,9 +9,12 @@ use std::collections::VecDeque;
 
 use crate::math::elementary::pow;
 use crate::runtime::solve::control::{Accuracy, Control};
+use crate::runtime::solve::jacobian::Jacobian;
 use crate::runtime::solve::method::{Flow, Method, Past, Start, Stretch, Trial};
+use crate::runtime::solve::rodas5p::Rodas5p;
 use crate::runtime::solve::segment::Segment;
-use crate::runtime::solve::ulp;
+use crate::runtime::solve::switch::{self, Regime, Switch, Vote};
+use crate::runtime::solve::{self, Methods, ulp};
 
 /// What one integration remembers from step to step.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +25,8 @@ pub struct Integration {
     control: Control,
     /// Rates at the clock and before it.
     past: Past,
+    /// Which method takes the next step, where there is a choice.
+    pub switch: Switch,
     /// The last tries, oldest first; for messages.
     pub attempts: VecDeque<Attempt>,
 }
@@ -41,6 +48,12 @@ pub struct Attempt {
 
 /// How many tries are remembered.
 const ATTEMPTS: usize = 5;
+
+/// Operations that are taken for the right-hand sides of a step, for each equation, where methods are compared: ten for
+/// each of the six of an explicit step, and of the eight of a stiff one with its Jacobian.
+const EXPLICIT_RATES: u64 = 60;
+/// See above.
+const STIFF_RATES: u64 = 90;
 
 impl Integration {
     /// An integration that begins with this step; none: to be estimated.
@@ -85,9 +98,17 @@ pub enum Stuck {
     Underflow,
 }
 
-/// Takes steps by one method; owns its scratch space.
+/// Takes steps; owns the scratch space of the methods.
 pub struct Integrator {
+    /// Takes the steps of [`Regime::Explicit`]; where there is no choice, all.
     method: Box<dyn Method>,
+    /// Takes those of [`Regime::Stiff`].
+    stiff: Option<Rodas5p>,
+    /// Which of them took the last step.
+    regime: Regime,
+    /// Scratch: of a look whether a flow is stiff, and of the stiff step that is tried for it.
+    jacobian: Jacobian,
+    asked: Trial,
     accuracy: Accuracy,
     /// No step leads beyond, s; one that would nearly reach it ends there.
     pub stop: f64,
@@ -103,9 +124,16 @@ pub struct Integrator {
 
 impl Integrator {
     /// An integrator up to `time_end`, s.
-    pub fn new(method: Box<dyn Method>, accuracy: Accuracy, time_end: f64) -> Self {
+    pub fn new(methods: Methods, accuracy: Accuracy, time_end: f64) -> Self {
         Self {
-            method,
+            method: solve::method(methods.first(), accuracy),
+            stiff: match methods {
+                Methods::One(_) => None,
+                Methods::Automatic(_) => Some(Rodas5p::default()),
+            },
+            regime: Regime::Explicit,
+            jacobian: Jacobian::default(),
+            asked: Trial::default(),
             accuracy,
             stop: time_end,
             step_max: f64::INFINITY,
@@ -125,7 +153,11 @@ impl Integrator {
     ) -> Result<Stretch, Stuck> {
         self.trial.resize(x.len());
         self.begin(t, x, integration, flow)?;
-        let mut h = match (self.method.reach(t, x, self.accuracy, flow), integration.h) {
+        let reach = match integration.switch.regime {
+            Regime::Explicit => self.method.reach(t, x, self.accuracy, flow),
+            Regime::Stiff => None,
+        };
+        let mut h = match (reach, integration.h) {
             (Some(h), _) | (None, Some(h)) => h,
             (None, None) => self.first_step(t, x, integration, flow),
         };
@@ -138,8 +170,7 @@ impl Integrator {
             if too_short && end < self.stop {
                 return Err(if self.is_finite() { Stuck::Underflow } else { Stuck::NonFinite });
             }
-            self.method.step(&Start { t, h: step, x, past: &integration.past }, flow, &mut self.trial);
-            self.operations += self.method.operations(integration.past.len()) * x.len() as u64;
+            self.try_step(&Start { t, h: step, x, past: &integration.past }, integration.switch.regime, flow);
             let stretch = Stretch { t, h: step, end };
             if too_short {
                 // Not a step, but the end: what is left of the run cannot be told from none.
@@ -155,6 +186,7 @@ impl Integrator {
                 let next = step * integration.control.accepted(ratio, *pace);
                 let cut_short = step < wanted;
                 integration.h = Some(if cut_short { next.max(h) } else { next }.min(1e100));
+                self.look(&stretch, integration, flow);
                 return Ok(stretch);
             }
             self.rejected += 1;
@@ -162,13 +194,65 @@ impl Integrator {
         }
     }
 
+    /// Tries one step by the method of a regime.
+    fn try_step(&mut self, start: &Start<'_>, regime: Regime, flow: &mut dyn Flow) {
+        self.regime = regime;
+        let method: &mut dyn Method = match (&mut self.stiff, regime) {
+            (Some(stiff), Regime::Stiff) => stiff,
+            (None, _) | (_, Regime::Explicit) => &mut *self.method,
+        };
+        method.step(start, flow, &mut self.trial);
+        self.operations += method.operations(start.past.len()) * start.x.len() as u64;
+    }
+
+    /// After an accepted step: whether the next is for the other method.
+    fn look(&mut self, stretch: &Stretch, integration: &mut Integration, flow: &mut dyn Flow) {
+        let Some(stiff) = &self.stiff else { return };
+        if !integration.switch.is_due() {
+            return;
+        }
+        let change = match self.regime {
+            Regime::Stiff => switch::follows(stretch.h, stiff.jacobian()),
+            Regime::Explicit => {
+                flow.jacobian(stretch.end, &self.trial.x_new, &mut self.jacobian);
+                !switch::follows(stretch.h, &self.jacobian) && self.stiff_pays(stretch, flow)
+            }
+        };
+        integration.switch.count(if change { Vote::Change } else { Vote::Stay });
+    }
+
+    /// Whether, after an explicit step, a stiff one would be good enough that is longer by twice what it costs more.
+    fn stiff_pays(&mut self, stretch: &Stretch, flow: &mut dyn Flow) -> bool {
+        let (Some(stiff), x) = (&mut self.stiff, &self.trial.x_new) else { return false };
+        let explicit = self.method.operations(self.method.depth()) + EXPLICIT_RATES;
+        let ratio = (Rodas5p::operations_of(&self.jacobian) + STIFF_RATES) as f64 / explicit as f64;
+        let h = 2.0 * ratio * stretch.h;
+        if stretch.end + h > self.stop {
+            return false;
+        }
+        let mut past = Past::default();
+        past.push(stretch.end, &self.trial.rates, 1);
+        self.asked.resize(x.len());
+        stiff.step(&Start { t: stretch.end, h, x, past: &past }, flow, &mut self.asked);
+        self.operations += stiff.operations(1) * x.len() as u64;
+        let Trial { error, x_new, rates, .. } = &self.asked;
+        rates.iter().all(|rate| rate.is_finite()) && self.accuracy.error_norm(error, x, x_new) <= 1.0
+    }
+
+    /// Which method took the last step, where there is a choice.
+    pub fn regime(&self) -> Regime {
+        self.regime
+    }
+
     /// Does again what failed last, for a flow that looks on.
     pub fn again(&mut self, t: f64, x: &[f64], integration: &Integration, flow: &mut dyn Flow) {
         match integration.attempts.back() {
             Some(last) if !integration.is_fresh() => {
                 let start = Start { t, h: last.h, x, past: &integration.past };
-                self.method.reach(t, x, self.accuracy, flow);
-                self.method.step(&start, flow, &mut self.trial);
+                if integration.switch.regime == Regime::Explicit {
+                    self.method.reach(t, x, self.accuracy, flow);
+                }
+                self.try_step(&start, integration.switch.regime, flow);
             }
             Some(_) | None => flow.rates(t, x, &mut self.trial.rates),
         }
@@ -176,7 +260,10 @@ impl Integrator {
 
     /// Writes the dense output of the accepted step for the states `x` at its begin, equations from `first` on.
     pub fn dense(&self, stretch: &Stretch, x: &[f64], first: usize, segment: &mut Segment) {
-        self.method.dense(stretch, x, first, segment);
+        match (&self.stiff, self.regime) {
+            (Some(stiff), Regime::Stiff) => stiff.dense(stretch, x, first, segment),
+            (None, _) | (_, Regime::Explicit) => self.method.dense(stretch, x, first, segment),
+        }
     }
 
     /// Goes on from the end of the accepted step, for which dense output has been written.

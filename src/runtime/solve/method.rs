@@ -5,6 +5,7 @@
 //! method to say ([`crate::runtime::solve::control`]).
 
 use crate::runtime::solve::control::{Accuracy, Pace};
+use crate::runtime::solve::jacobian::Jacobian;
 use crate::runtime::solve::segment::Segment;
 
 /// A right-hand side.
@@ -19,6 +20,12 @@ pub trait Flow {
     /// The Taylor coefficients of the solution through (t, x) up to `order`, in 1/s^k, as the first rows of
     /// `rows.coefficients`: `order` + 1 for each state. False, and nothing is done, where the flow has no series.
     fn series(&mut self, t: f64, x: &[f64], order: usize, rows: &mut SeriesRows) -> bool;
+
+    /// df/dx at (t, x).
+    fn jacobian(&mut self, t: f64, x: &[f64], jacobian: &mut Jacobian);
+
+    /// df/dt at (t, x), the states held, into `rates`.
+    fn time_rates(&mut self, t: f64, x: &[f64], rates: &mut [f64]);
 }
 
 /// What a series is expanded in; kept from step to step.

@@ -5,12 +5,18 @@
 
 pub mod segment;
 pub mod control;
+pub mod jacobian;
 pub mod method;
 pub mod tsit5;
 pub mod adams;
 pub mod series_step;
 pub mod taylor;
 pub mod leap;
+mod cuthill_mckee;
+mod banded;
+mod shifted;
+mod rodas5p;
+pub mod switch;
 pub mod integrate;
 mod bracket;
 pub mod roots;
@@ -22,6 +28,7 @@ use adams::Adams;
 use control::Accuracy;
 use method::Method;
 use taylor::Taylor;
+use rodas5p::Rodas5p;
 use tsit5::Tsit5;
 
 /// A method's name.
@@ -33,6 +40,38 @@ pub enum MethodName {
     Adams,
     /// [`Taylor`].
     Taylor,
+    /// [`Rodas5p`].
+    Stiff,
+}
+
+impl MethodName {
+    /// As users call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            MethodName::Tsit5 => "tsit5",
+            MethodName::Adams => "adams",
+            MethodName::Taylor => "taylor",
+            MethodName::Stiff => "stiff",
+        }
+    }
+}
+
+/// Which methods take the steps of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Methods {
+    /// One for all.
+    One(MethodName),
+    /// An explicit one, and [`MethodName::Stiff`] where a flow is stiff.
+    Automatic(MethodName),
+}
+
+impl Methods {
+    /// The one that begins.
+    pub fn first(self) -> MethodName {
+        match self {
+            Methods::One(name) | Methods::Automatic(name) => name,
+        }
+    }
 }
 
 /// The method of this name for an accuracy.
@@ -41,6 +80,7 @@ pub fn method(name: MethodName, accuracy: Accuracy) -> Box<dyn Method> {
         MethodName::Tsit5 => Box::<Tsit5>::default(),
         MethodName::Adams => Box::<Adams>::default(),
         MethodName::Taylor => Box::new(Taylor::new(accuracy.tolerance)),
+        MethodName::Stiff => Box::<Rodas5p>::default(),
     }
 }
 
