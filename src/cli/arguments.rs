@@ -250,9 +250,9 @@ pub(super) enum AlgorithmName {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum Engine {
     /// Lists near pairs only, and lets those run ahead who cannot meet anybody
+    #[default]
     Fast,
     /// Looks at everything: slow and simple
-    #[default]
     Plain,
 }
 

@@ -7,8 +7,8 @@ pub use crate::calculus::system::FunctionId;
 pub use crate::calculus::system::{
     ActionList, ActionStep, AgentSystem, Aggregate, Atom, ClaimKind, ClaimSystem, Column, Condition, Flow,
     Fold, Frame, Guard, Integrator, InteractionSystem, Kink, KinkKind, Layout, LetSystem, LetValue,
-    ModeSystem, Near, PairTransition, Population, Quantified, Range, Record, Relation, Run, Slot, Target, Term,
-    TransitionSystem, Trigger, VarRef,
+    ModeSystem, Near, PairTransition, Population, Quantified, Range, Record, Relation, Run, Slot, Target,
+    Term, TransitionSystem, Trigger, VarRef,
 };
 use crate::codegen::kernel::{Kernel, StepKernel};
 use crate::codegen::series::SeriesTape;

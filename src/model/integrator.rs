@@ -29,7 +29,11 @@ impl Integrator {
     /// Whether it is built.
     pub fn is_built(self) -> bool {
         match self {
-            Integrator::Auto | Integrator::Taylor | Integrator::Tsit5 | Integrator::Adams | Integrator::Stiff => true,
+            Integrator::Auto
+            | Integrator::Taylor
+            | Integrator::Tsit5
+            | Integrator::Adams
+            | Integrator::Stiff => true,
         }
     }
 

@@ -110,6 +110,11 @@ impl Stepper {
         }
     }
 
+    /// Whether the flow of an agent in a mode was stiff when it last moved by it.
+    pub fn is_stiff(&self, agent: usize, mode: usize) -> bool {
+        self.stiff.contains(&(agent, mode))
+    }
+
     /// Advances a group by one step, which may end early at a kink.
     pub fn advance(&mut self, agents: &mut Agents<'_>, group: &mut Group, curves: &mut CurveRows) -> Advance {
         if !group.kinks.is_empty() {

@@ -50,9 +50,8 @@ impl<'p> Cold<'p> {
             Some(herds.len() as u32 - 1)
         };
         let modes = |ty: usize| 0..program.types[ty].modes.len();
-        let of_mode: Vec<Vec<Option<u32>>> = (0..program.types.len())
-            .map(|ty| modes(ty).map(|mode| herd_of(ty, mode)).collect())
-            .collect();
+        let of_mode: Vec<Vec<Option<u32>>> =
+            (0..program.types.len()).map(|ty| modes(ty).map(|mode| herd_of(ty, mode)).collect()).collect();
         let nowhere = Place { herd: NONE, place: 0, cold: false };
         let places = if herds.is_empty() { Vec::new() } else { vec![nowhere; n_agents] };
         Self { herds, of_mode, places }

@@ -4,8 +4,8 @@
 //! aggregate is a condition too: its comparisons stand before those of the guard, those of inner aggregates first.
 
 use crate::codegen::program::{
-    Atom, ClaimSystem, Condition, Frame, Guard, Near, PairTransition, Program, Quantified, Range, Relation, Slot,
-    TransitionSystem, Trigger,
+    Atom, ClaimSystem, Condition, Frame, Guard, Near, PairTransition, Program, Quantified, Range, Relation,
+    Slot, TransitionSystem, Trigger,
 };
 use crate::runtime::fold;
 use crate::runtime::population::Agents;

@@ -100,10 +100,6 @@ impl Flow for Witness<'_, '_, '_> {
         false
     }
 
-    fn series(&mut self, _t: f64, _x: &[f64], _order: usize, _rows: &mut SeriesRows) -> bool {
-        false
-    }
-
     fn jacobian(&mut self, t: f64, x: &[f64], jacobian: &mut Jacobian) {
         self.flow.jacobian(t, x, jacobian);
     }

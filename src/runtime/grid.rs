@@ -149,10 +149,8 @@ impl Grid {
                 return None;
             }
             let (first, last) = (self.place(dimension, bound.lo), self.place(dimension, bound.hi));
-            cells = cells
-                .iter()
-                .flat_map(|&cell| (first..=last).map(move |place| join(cell, place)))
-                .collect();
+            cells =
+                cells.iter().flat_map(|&cell| (first..=last).map(move |place| join(cell, place))).collect();
         }
         cells.sort_unstable();
         cells.dedup();
@@ -221,9 +219,8 @@ mod tests {
                 let bounds = some(1, dimensions, &mut die);
                 grid.change(number, &bounds);
                 for asked in [number, (die() * 200.0) as u32] {
-                    let expected: Vec<u32> = (0..200)
-                        .filter(|&b| b != asked && overlap(grid.get(asked), grid.get(b)))
-                        .collect();
+                    let expected: Vec<u32> =
+                        (0..200).filter(|&b| b != asked && overlap(grid.get(asked), grid.get(b))).collect();
                     assert_eq!(grid.around(asked), expected, "{dimensions} dimensions, round {round}");
                 }
             }

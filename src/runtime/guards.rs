@@ -119,7 +119,6 @@ pub struct Guards<'p> {
     free: Vec<Vec<u32>>,
 }
 
-
 /// More instances than the limit allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooManyGuards {

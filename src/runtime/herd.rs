@@ -30,10 +30,12 @@ pub struct Herd<'p> {
 pub struct Advanced {
     /// Steps.
     pub steps: u64,
-    /// The places of those that could go no further by such steps.
+    /// The places of those that could go no further by such steps, or only by very many.
     pub refused: Vec<usize>,
 }
 
+/// An agent that takes so many steps in a window is left to who can choose another method.
+const STEPS_MAX: u32 = 1000;
 /// Up to this many lanes are cheaper one by one.
 const FEW: usize = 3;
 
@@ -123,7 +125,8 @@ impl<'p> Herd<'p> {
     /// Advances all that have not come as far as `until` until they have; what is known of their ways begins at `from` or
     /// before it.
     pub fn advance(&mut self, from: f64, until: f64) -> Advanced {
-        let waiting: Vec<usize> = (0..self.clocks.len()).filter(|&place| self.clocks[place] < until).collect();
+        let waiting: Vec<usize> =
+            (0..self.clocks.len()).filter(|&place| self.clocks[place] < until).collect();
         let mut advanced = Advanced::default();
         let mut lanes = Lanes::new(&self.leaps);
         let mut waiting = waiting.into_iter();
@@ -160,6 +163,7 @@ impl<'p> Herd<'p> {
             row.copy_within(n..2 * n + 1, 2 * n + 1);
         }
         lanes.place[lane] = place;
+        lanes.taken[lane] = 0;
         lanes.n_boarded += 1;
         lanes.t.0[lane] = self.clocks[place];
         lanes.last_t.0[lane] = row[n];
@@ -178,7 +182,9 @@ impl<'p> Herd<'p> {
         advanced.steps += lanes.n_boarded as u64;
         for lane in 0..N_LANES {
             let good = lanes.good.0[lane] != 0.0;
-            if lanes.place[lane] == NOBODY || good && lanes.t.0[lane] < until {
+            lanes.taken[lane] += 1;
+            let goes_on = good && lanes.t.0[lane] < until;
+            if lanes.place[lane] == NOBODY || goes_on && lanes.taken[lane] < STEPS_MAX {
                 continue;
             }
             let place = lanes.place[lane];
@@ -192,10 +198,10 @@ impl<'p> Herd<'p> {
                 row[i] = x[i].0[lane];
                 row[n + 1 + i] = lanes.last_x[i].0[lane];
             }
-            if !good {
+            if !good || goes_on {
                 advanced.refused.push(place);
-                advanced.steps -= 1;
             }
+            advanced.steps -= u64::from(!good);
             lanes.place[lane] = NOBODY;
             lanes.n_boarded -= 1;
         }
@@ -219,7 +225,10 @@ impl<'p> Herd<'p> {
         for i in 0..n {
             (x[i], last_x[i]) = (lanes.x[i].0[lane], lanes.last_x[i].0[lane]);
         }
-        while t < until {
+        for _ in 0..STEPS_MAX {
+            if t >= until {
+                break;
+            }
             let leap = self.leaps.leap(t, &x[..n], rows, &mut x_new[..n]);
             if leap.good == 0.0 {
                 advanced.refused.push(place);
@@ -228,6 +237,9 @@ impl<'p> Herd<'p> {
             advanced.steps += 1;
             (last_t, last_x) = (t, x);
             (t, x) = (leap.end, x_new);
+        }
+        if t < until && advanced.refused.last() != Some(&place) {
+            advanced.refused.push(place);
         }
         let row = &mut self.rows[place * width..][..width];
         self.clocks[place] = t;
@@ -243,6 +255,8 @@ const NOBODY: usize = usize::MAX;
 /// The agents that are advanced at once.
 struct Lanes {
     place: [usize; N_LANES],
+    /// Steps in this window.
+    taken: [u32; N_LANES],
     n_boarded: usize,
     t: Wide,
     x: Vec<Wide>,
@@ -260,6 +274,7 @@ impl Lanes {
         let (zero, n) = (Wide::all(0.0), leaps.tape.n_states);
         Self {
             place: [NOBODY; N_LANES],
+            taken: [0; N_LANES],
             n_boarded: 0,
             t: zero,
             x: vec![zero; n],

@@ -64,7 +64,8 @@ impl Engine<'_, '_> {
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
         agents.extend(atom.slots.iter().map(|&slot| slots[slot]).filter(|&agent| agent != ABSENT));
         let instance = self.guards.atoms[index].instance;
-        for &ty in if atom.folds.is_empty() { &[][..] } else { &self.guards.definition(instance).quantified } {
+        for &ty in if atom.folds.is_empty() { &[][..] } else { &self.guards.definition(instance).quantified }
+        {
             agents.extend_from_slice(&self.agents.of_type[ty]);
         }
     }
@@ -73,7 +74,11 @@ impl Engine<'_, '_> {
     fn freeze(&mut self, agent: usize) -> bool {
         let row = &self.agents.agents[agent];
         let group = &mut self.groups.groups[row.group];
-        if group.members.len() != 1 || !self.agents.cold.may_be(row.ty, row.mode) || group.clock == f64::INFINITY {
+        if self.stepper.is_stiff(agent, row.mode)
+            || group.members.len() != 1
+            || !self.agents.cold.may_be(row.ty, row.mode)
+            || group.clock == f64::INFINITY
+        {
             return false;
         }
         self.agents.cold.freeze(agent, row.ty, row.mode, (group.clock, &row.states), &row.aux);

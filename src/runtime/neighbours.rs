@@ -52,12 +52,7 @@ impl Field {
     }
 
     /// The number of an agent's box on one side; none if it is of another type.
-    pub fn number(
-        &self,
-        agents: &Agents<'_>,
-        agent: usize,
-        side: usize,
-    ) -> Option<u32> {
+    pub fn number(&self, agents: &Agents<'_>, agent: usize, side: usize) -> Option<u32> {
         let agent = &agents.agents[agent];
         let before = if side == 0 { 0 } else { agents.of_type[self.types[0]].len() };
         (agent.ty == self.types[side]).then(|| (before + agent.rank) as u32)
@@ -68,7 +63,11 @@ impl Field {
         let first = &of_type[self.types[0]];
         if self.alike {
             let (a, b) = (first[a as usize] as u32, first[b as usize] as u32);
-            return if self.symmetric { SmallVec::from_slice(&[[a, b]]) } else { SmallVec::from_slice(&[[a, b], [b, a]]) };
+            return if self.symmetric {
+                SmallVec::from_slice(&[[a, b]])
+            } else {
+                SmallVec::from_slice(&[[a, b], [b, a]])
+            };
         }
         // Boxes of the two sides only, and not of an agent with itself.
         let (a, b) = (a as usize, b as usize);

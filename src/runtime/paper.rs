@@ -16,9 +16,9 @@ pub enum Algorithm {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Form {
     /// In windows of time: who cannot meet anybody runs ahead, and only near pairs are listed.
+    #[default]
     Fast,
     /// One queue of clocks, all pairs: slow and simple.
-    #[default]
     Plain,
 }
 

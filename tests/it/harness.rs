@@ -216,7 +216,7 @@ impl Case {
     pub fn algorithm(mut self, algorithm: Algorithm) -> Self {
         self.algorithm = algorithm;
         match algorithm {
-            Algorithm::Masim => self,
+            Algorithm::Masim(_) => self,
             Algorithm::Masim2004(_) | Algorithm::Sasim2004(_) => self.integrator(Integrator::Adams),
         }
     }

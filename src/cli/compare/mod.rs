@@ -107,7 +107,9 @@ fn run_cell(
         bar.inc(1);
         measured.map_err(|diagnostic| tell(&sources, std::slice::from_ref(&diagnostic)))
     };
-    let Ok(tight) = runs(&mut program, Algorithm::Masim(Form::Plain), TIGHT) else { return Ok(Exit::RunError) };
+    let Ok(tight) = runs(&mut program, Algorithm::Masim(Form::Plain), TIGHT) else {
+        return Ok(Exit::RunError);
+    };
     for &tolerance in &tolerances {
         for (number, &algorithm) in algorithms.iter().enumerate() {
             let Ok(measured) = runs(&mut program, algorithm, tolerance) else { return Ok(Exit::RunError) };

@@ -5,7 +5,6 @@
 
 use std::sync::OnceLock;
 
-
 /// A set of instructions that this CPU has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Level(Set);

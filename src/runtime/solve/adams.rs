@@ -176,16 +176,6 @@ mod tests {
             false
         }
 
-        fn series(
-            &mut self,
-            _t: f64,
-            _x: &[f64],
-            _order: usize,
-            _rows: &mut crate::runtime::solve::method::SeriesRows,
-        ) -> bool {
-            false
-        }
-
         fn jacobian(&mut self, _t: f64, _x: &[f64], jacobian: &mut Jacobian) {
             jacobian.reset(1);
         }

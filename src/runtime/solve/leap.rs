@@ -106,7 +106,14 @@ impl Leaps<'_> {
 /// Numbers in which a series can be expanded; what does it is compiled once.
 pub trait Expand: Numbers {
     /// [`SeriesTape::expand_numbers`].
-    fn expand(tape: &SeriesTape, time: Self, states: &[Self], fixed: &[Self], order: usize, rows: &mut [Self]);
+    fn expand(
+        tape: &SeriesTape,
+        time: Self,
+        states: &[Self],
+        fixed: &[Self],
+        order: usize,
+        rows: &mut [Self],
+    );
 }
 
 impl Expand for f64 {
@@ -116,7 +123,14 @@ impl Expand for f64 {
 }
 
 impl Expand for Wide {
-    fn expand(tape: &SeriesTape, time: Wide, states: &[Wide], fixed: &[Wide], order: usize, rows: &mut [Wide]) {
+    fn expand(
+        tape: &SeriesTape,
+        time: Wide,
+        states: &[Wide],
+        fixed: &[Wide],
+        order: usize,
+        rows: &mut [Wide],
+    ) {
         tape.expand_wide(time, states, fixed, order, rows);
     }
 }
@@ -149,7 +163,9 @@ impl Leaps<'_> {
                 let n_terms = self.order + 1;
                 debug_assert!(n_terms <= N_MAX);
                 let terms = segment.reset(t, leap.h, leap.end, n_terms, x.len());
-                for (row, terms) in rows.coefficients.chunks_exact(n_terms).zip(terms.chunks_exact_mut(n_terms)) {
+                for (row, terms) in
+                    rows.coefficients.chunks_exact(n_terms).zip(terms.chunks_exact_mut(n_terms))
+                {
                     for ((term, c), power) in terms.iter_mut().zip(row).zip(&rows.powers) {
                         *term = c * power;
                     }

@@ -19,7 +19,9 @@ pub trait Flow {
 
     /// The Taylor coefficients of the solution through (t, x) up to `order`, in 1/s^k, as the first rows of
     /// `rows.coefficients`: `order` + 1 for each state. False, and nothing is done, where the flow has no series.
-    fn series(&mut self, t: f64, x: &[f64], order: usize, rows: &mut SeriesRows) -> bool;
+    fn series(&mut self, _t: f64, _x: &[f64], _order: usize, _rows: &mut SeriesRows) -> bool {
+        false
+    }
 
     /// df/dx at (t, x).
     fn jacobian(&mut self, t: f64, x: &[f64], jacobian: &mut Jacobian);

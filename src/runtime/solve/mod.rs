@@ -27,8 +27,8 @@ pub mod extra_state;
 use adams::Adams;
 use control::Accuracy;
 use method::Method;
-use taylor::Taylor;
 use rodas5p::Rodas5p;
+use taylor::Taylor;
 use tsit5::Tsit5;
 
 /// A method's name.
