@@ -5,7 +5,7 @@
 use std::fmt::Write;
 
 use crate::calculus::graph::NodeId;
-use crate::calculus::print::{Names, Sheet};
+use crate::calculus::print::{self, Names, Sheet};
 use crate::calculus::system::{
     ActionStep, AgentSystem, Atom, ClaimKind, Column, Condition, Flow, Frame, FunctionId, Guard, KinkKind,
     LetValue, ModeSystem, Near, PairTransition, Quantified, System, Target, TransitionSystem, Trigger,
@@ -208,7 +208,7 @@ fn range(sheet: &Sheet, near: &[Near], slot: usize, what: &str) -> String {
     }
     let bounds = near.iter().map(|&Near { own, other, within }| {
         let within: f64 = format!("{within:.5e}").parse().expect("a number is one");
-        format!("|{} - {}| <= {within}", sheet.state(0, own), sheet.state(slot, other))
+        format!("|{} - {}| <= {}", sheet.state(0, own), sheet.state(slot, other), print::constant(within))
     });
     bounds.collect::<Vec<_>>().join(", ")
 }

@@ -263,6 +263,9 @@ fn scaled(interval: Interval, factor: f64) -> Interval {
     if factor == 1.0 {
         return interval;
     }
+    if factor == -1.0 {
+        return interval.neg();
+    }
     let product = Interval::eval(Op::Mul, &[interval, Interval::point(factor)]);
     let (low, high) = if factor > 0.0 { (interval.lo, interval.hi) } else { (interval.hi, interval.lo) };
     let lo = if low == 0.0 { 0.0 } else { product.lo };

@@ -89,7 +89,7 @@ impl Names<'_> {
 }
 
 /// A number as the language writes it.
-fn constant(x: f64) -> String {
+pub fn constant(x: f64) -> String {
     if x == std::f64::consts::PI {
         return "pi".to_owned();
     }
