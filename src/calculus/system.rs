@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use crate::base::{Arena, Idx, Span};
 use crate::calculus::graph::{Graph, NodeId};
+pub use crate::calculus::range::{Near, Range};
 pub use crate::calculus::relation::Relation;
 use crate::math::Scale;
 pub use crate::model::ir::{Aggregate, Block, Instance, Integrator, Population, Record, Run, VarRef};
@@ -98,17 +99,6 @@ pub struct Term {
     pub rates: FunctionId,
     /// As [`Atom::smooth`], over all aggregates within.
     pub smooth: bool,
-}
-
-/// Agents that a quantifier binds one after the other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Range {
-    /// The slot it binds.
-    pub slot: usize,
-    /// The type.
-    pub ty: usize,
-    /// Without self (in an interaction: without both participants).
-    pub other: bool,
 }
 
 /// How the agent in a slot is found.
@@ -388,19 +378,6 @@ pub struct Quantified {
     /// Which agents matter: those beyond one of these bounds from the agent in slot 0 settle nothing. The body of `exists` is
     /// false for them, now and at any instant at which it becomes true; that of `forall` is true. Empty: all matter.
     pub near: Vec<Near>,
-}
-
-/// `|a.x - b.y| <= within`, for x a state of the agent in slot 0 and y one of the agent in slot 1 or in that of a quantifier.
-///
-/// Bounds of differences of real numbers: where states are so large that their own rounding counts, so it does here.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Near {
-    /// Which state of the agent in slot 0.
-    pub own: usize,
-    /// Which state of the other one.
-    pub other: usize,
-    /// At least 0, finite.
-    pub within: f64,
 }
 
 /// A comparison of reals, `g <= 0` or `g < 0`.
