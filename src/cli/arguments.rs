@@ -315,7 +315,7 @@ pub(super) enum Stage {
 
 fn integrator(text: &str) -> Result<Integrator, String> {
     let named = Integrator::NAMED.iter().find(|(name, _)| *name == text);
-    named.map(|(_, integrator)| *integrator).ok_or("write auto, tsit5, adams or stiff".into())
+    named.map(|(_, integrator)| *integrator).ok_or("write auto, taylor, tsit5, adams or stiff".into())
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {

@@ -204,7 +204,7 @@ mod tests {
             for a in 0..300 {
                 expected.extend((a + 1..300).filter(|&b| overlap(grid.get(a), grid.get(b))).map(|b| (a, b)));
             }
-            assert!(!expected.is_empty());
+            assert!(dimensions == 4 || !expected.is_empty());
             assert_eq!(found, expected, "{dimensions} dimensions");
         }
     }

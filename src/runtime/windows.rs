@@ -9,8 +9,8 @@ use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::observe::End;
 
-/// As many pairs are listed for an agent as balance, about, what listing and what looking at pairs costs.
-const PAIRS_WANTED: f64 = 0.5;
+/// So many pairs are new in a list, for each agent, that about as much work goes into them as into making the list.
+const NEW_WANTED: f64 = 0.3;
 /// The first list is for this share of the run.
 const FIRST_LIST: f64 = 1.0 / 32.0;
 /// The first window is this share of the run.
@@ -36,8 +36,9 @@ impl Engine<'_, '_> {
         loop {
             let from = self.present.time;
             if self.has_fields() && self.neighbours.until <= from {
-                let span = self.next_span();
+                let span = self.neighbours.span;
                 let new = self.list_pairs((from + span).min(self.time_end))?;
+                self.neighbours.span = self.next_span(new.len());
                 for instance in new {
                     self.meet(instance);
                 }
@@ -109,11 +110,10 @@ impl Engine<'_, '_> {
         Ok(())
     }
 
-    /// For how long the next lists are to hold, s: longer if few pairs are listed, shorter if many are.
-    fn next_span(&mut self) -> f64 {
-        let n_listed: usize = self.neighbours.fields.iter().map(|field| field.listed.len()).sum();
-        let share = n_listed as f64 / self.agents.len() as f64;
-        self.neighbours.span *= (PAIRS_WANTED / share).sqrt().clamp(1.0 / GROW, GROW);
-        self.neighbours.span
+    /// For how long the next lists are to hold, s: longer if few pairs were new in these, shorter if many were.
+    fn next_span(&self, n_new: usize) -> f64 {
+        let share = n_new as f64 / self.agents.len() as f64;
+        let growth = (NEW_WANTED / share).sqrt().clamp(1.0 / GROW, GROW);
+        (self.neighbours.span * growth).max(SHORTEST * self.horizon())
     }
 }

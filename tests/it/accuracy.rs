@@ -40,7 +40,7 @@ fn a_smooth_flow() {
     let run = |tolerance: f64| {
         simulate(&format!(
             "agent A {{ state x = 1, v = 0  flow {{ x' = v  v' = -x }} }}
-             system {{ a = A() }}  run {{ until 10  tolerance {tolerance:e} }}"
+             system {{ a = A() }}  run {{ until 10  tolerance {tolerance:e}  integrator tsit5 }}"
         ))
     };
     of_order_five(&sweep(run, |run| (run.value("a.x") - 10f64.cos()).hypot(run.value("a.v") + 10f64.sin())));
@@ -52,7 +52,7 @@ fn a_flow_that_is_not_linear() {
     let run = |tolerance: f64| {
         simulate(&format!(
             "agent A {{ state x = 0.1  flow {{ x' = x*(1 - x) }} }}
-             system {{ a = A() }}  run {{ until 3  tolerance {tolerance:e} }}"
+             system {{ a = A() }}  run {{ until 3  tolerance {tolerance:e}  integrator tsit5 }}"
         ))
     };
     let points = sweep(run, |run| (run.value("a.x") - 1.0 / (1.0 + 9.0 * (-3f64).exp())).abs());
@@ -66,7 +66,7 @@ fn across_events() {
     let run = |tolerance: f64| {
         simulate(&format!(
             "agent A {{ state x = 1, v = 0  flow {{ x' = v  v' = -x }}  wall: when x <= -0.5 {{ v := -v }} }}
-             system {{ a = A() }}  run {{ until 10  tolerance {tolerance:e} }}"
+             system {{ a = A() }}  run {{ until 10  tolerance {tolerance:e}  integrator tsit5 }}"
         ))
     };
     let phase = 10.0 - 2.0 * (4.0 * std::f64::consts::PI / 3.0);
@@ -86,7 +86,7 @@ fn across_events_of_two_agents() {
             "agent A {{ state x = 1, v = 0  flow {{ x' = v  v' = -x }} }}
              agent B {{ state x = -1, v = 0  flow {{ x' = v  v' = -2*x }} }}
              interaction Meet(a: A, b: B) {{ pair: when a.x - b.x <= 0.1 {{ a.v := -a.v }} }}
-             system {{ a = A()  b = B() }}  run {{ until 3  tolerance {tolerance:e} }}"
+             system {{ a = A()  b = B() }}  run {{ until 3  tolerance {tolerance:e}  integrator tsit5 }}"
         ))
     };
     let best = text(1e-13);
@@ -107,7 +107,7 @@ fn in_a_coupled_group() {
             "agent Mass {{ link mate: Mass  state x, v = 0
                           flow {{ x' = v  v' = if mate then mate.x - x else 0 }} }}
              system {{ a = Mass(x = 1, mate = b)  b = Mass(x = -1, mate = a) }}
-             run {{ until 8  tolerance {tolerance:e} }}"
+             run {{ until 8  tolerance {tolerance:e}  integrator tsit5 }}"
         ))
     };
     let phase = 2f64.sqrt() * 8.0;
@@ -122,7 +122,7 @@ fn across_a_kink() {
     let run = |tolerance: f64| {
         simulate(&format!(
             "agent A {{ state x = 0, v = 1  flow {{ x' = v  v' = -x - max(x, 0) }} }}
-             system {{ a = A() }}  run {{ until 8  tolerance {tolerance:e} }}"
+             system {{ a = A() }}  run {{ until 8  tolerance {tolerance:e}  integrator tsit5 }}"
         ))
     };
     // up and back with rate sqrt 2, down and back with rate 1, then up again
