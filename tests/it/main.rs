@@ -29,6 +29,7 @@ mod closed_forms;
 mod bumper;
 mod accuracy;
 mod adams;
+mod taylor;
 mod paper;
 mod compare;
 mod differential;
