@@ -19,6 +19,7 @@ use hyc::calculus;
 use hyc::codegen::kernel::AgentView;
 use hyc::codegen::program::Program;
 use hyc::codegen::{self, Backend};
+use hyc::math::{N_LANES, Numbers, Wide};
 use hyc::model::{self, Files, Settings};
 use hyc::runtime::observe::{Event, Last, Observer, Outcome, Row};
 use hyc::runtime::{self, Limits};
@@ -176,6 +177,49 @@ fn whole_step(program: &Program) -> f64 {
     all / REPEATS as f64
 }
 
+/// The expansion of a car by the order of a tolerance: alone, and of each of as many as lanes, in seconds.
+fn expansions(program: &Program, order: usize) -> [f64; 2] {
+    let (states, aux) = rows(program);
+    let series = program.series[0][0].as_ref().expect("the flow of a car has a series");
+    let (mut fixed, mut room) = (vec![0.0; series.fixed.len()], vec![0.0; series.n_coefficients(order)]);
+    let alone = median(31, || {
+        for k in 0..REPEATS {
+            series.fix(|_, column| black_box(&aux)[column as usize], &mut fixed);
+            series.expand(k as f64 * 1e-3, black_box(&states), &fixed, order, &mut room);
+            black_box(&room);
+        }
+    });
+    let wide_aux: Vec<Wide> = aux.iter().map(|&x| Wide::all(x)).collect();
+    // Lanes that differ: no number is known beforehand.
+    let wide_states: Vec<Wide> =
+        states.iter().map(|&x| Wide(std::array::from_fn(|lane| x + 0.01 * lane as f64))).collect();
+    let nothing = Wide::all(0.0);
+    let (mut fixed, mut room) =
+        (vec![nothing; series.fixed.len()], vec![nothing; series.n_coefficients(order)]);
+    series.fix_wide(|_, column| wide_aux[column as usize], &mut fixed);
+    let rounds = REPEATS / N_LANES;
+    let together = median(31, || {
+        for k in 0..rounds {
+            series.expand_wide(Wide::all(k as f64 * 1e-3), black_box(&wide_states), &fixed, order, &mut room);
+            black_box(&room);
+        }
+    });
+    [alone / REPEATS as f64, together / (rounds * N_LANES) as f64]
+}
+
+/// A Taylor step's expansion against a whole Runge-Kutta step of the same car.
+fn series(program: &Program) {
+    println!(
+        "\n| bumper, one car: order | alone (ns) | in {N_LANES} lanes (ns) | Runge-Kutta step, alone (ns) |"
+    );
+    println!("|---|---|---|---|");
+    let step = whole_step(program) * 1e9;
+    for order in [8, 10, 12, 14] {
+        let [alone, together] = expansions(program, order).map(|seconds| seconds * 1e9);
+        println!("| {order} | {alone:.0} | {together:.1} | {step:.0} |");
+    }
+}
+
 /// The interpreter against machine code: a right-hand side, a whole step, and a whole run.
 fn back_ends() {
     println!("\n| bumper, N = 20 | interpreter | machine code | ratio |");
@@ -226,6 +270,7 @@ fn sizes() {
 fn main() {
     compile_times();
     back_ends();
+    series(&bumper(20, Backend::Jit));
     sizes();
     lanes::table();
 }

@@ -45,8 +45,12 @@ fn agrees(n: usize, tolerance: f64, time_error: f64, state_error: f64) {
     compare(n, &case(n, tolerance).run(), time_error, state_error);
 }
 
+fn agrees_with(integrator: Integrator, n: usize, tolerance: f64, time_error: f64, state_error: f64) {
+    compare(n, &case(n, tolerance).integrator(integrator).run(), time_error, state_error);
+}
+
 fn agrees_with_adams(n: usize, tolerance: f64, time_error: f64, state_error: f64) {
-    compare(n, &case(n, tolerance).integrator(Integrator::Adams).run(), time_error, state_error);
+    agrees_with(Integrator::Adams, n, tolerance, time_error, state_error);
 }
 
 fn compare(n: usize, run: &Run, time_error: f64, state_error: f64) {
@@ -166,6 +170,20 @@ fn adams_tight_20() {
 #[test]
 fn adams_tight_50() {
     agrees_with_adams(50, 1e-10, 1e-7, 1e-5);
+}
+
+#[test]
+fn taylor_loose() {
+    for n in [2, 5, 10, 20, 50] {
+        agrees_with(Integrator::Taylor, n, 1e-6, 1e-3, 1e-2);
+    }
+}
+
+#[test]
+fn taylor_tight() {
+    for n in [2, 5, 10, 20, 50] {
+        agrees_with(Integrator::Taylor, n, 1e-10, 1e-7, 1e-5);
+    }
 }
 
 #[test]

@@ -32,6 +32,7 @@ mod bumper;
 mod accuracy;
 mod adams;
 mod stiff;
+mod taylor;
 mod paper;
 mod compare;
 mod differential;

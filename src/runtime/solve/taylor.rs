@@ -105,3 +105,61 @@ impl Method for Taylor {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::runtime::solve::method::{Past, Tsit5Rows};
+
+    /// x' = x, whose coefficients are x / k!.
+    struct Growth;
+
+    impl Flow for Growth {
+        fn rates(&mut self, _t: f64, x: &[f64], dx: &mut [f64]) {
+            dx.copy_from_slice(x);
+        }
+
+        fn tsit5(&mut self, _t: f64, _h: f64, _rows: Tsit5Rows<'_>) -> bool {
+            false
+        }
+
+        fn series(&mut self, _t: f64, x: &[f64], order: usize, rows: &mut SeriesRows) -> bool {
+            rows.coefficients = x.to_vec();
+            (1..=order).for_each(|k| rows.coefficients.push(rows.coefficients[k - 1] / k as f64));
+            true
+        }
+    }
+
+    fn step(taylor: &mut Taylor, h: f64) -> Trial {
+        let accuracy = Accuracy { tolerance: 1e-4, absolute: 1e-4 };
+        let (mut trial, mut past) = (Trial::default(), Past::default());
+        trial.resize(1);
+        past.push(0.0, &[1.0], 1);
+        taylor.reach(0.0, &[1.0], accuracy, &mut Growth).expect("it has a series");
+        taylor.step(&Start { t: 0.0, h, x: &[1.0], past: &past }, &mut Growth, &mut trial);
+        trial
+    }
+
+    #[test]
+    fn the_error_of_a_step_falls_with_the_power_of_the_order_and_is_within_the_estimate() {
+        let mut taylor = Taylor::new(1e-4);
+        let error = |trial: &Trial, h: f64| (trial.x_new[0] - h.exp()).abs();
+        let (long, short) = (step(&mut taylor, 0.5), step(&mut taylor, 0.25));
+        let power = (error(&long, 0.5) / error(&short, 0.25)).log2();
+        assert!((power - (taylor.order as f64 + 1.0)).abs() < 0.1, "{power} at order {}", taylor.order);
+        for (trial, h) in [(&long, 0.5), (&short, 0.25)] {
+            let share = error(trial, h) / trial.error[0];
+            assert!(share < 1.0 && share > 0.01, "{share}");
+        }
+    }
+
+    #[test]
+    fn the_new_state_is_the_end_of_the_dense_output_to_the_bit() {
+        let mut taylor = Taylor::new(1e-10);
+        let trial = step(&mut taylor, 0.75);
+        let (mut segment, mut x) = (Segment::default(), [0.0]);
+        taylor.dense(&Stretch { t: 2.0, h: 0.75, end: 2.75 }, &[1.0], 0, &mut segment);
+        segment.states(2.75, &mut x);
+        assert_eq!(x[0].to_bits(), trial.x_new[0].to_bits());
+    }
+}
