@@ -22,6 +22,8 @@ mod jumps;
 mod condition;
 mod extremes;
 mod comparison;
+mod atom;
+mod locks;
 mod guard;
 mod aggregate;
 mod kinks;

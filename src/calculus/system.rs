@@ -353,6 +353,18 @@ pub enum KinkKind {
     },
 }
 
+/// Where a comparison jumps. Its branches are read from locks, auxiliary columns of self after its own; surfaces and g read
+/// those of the surfaces before them.
+#[derive(Clone, Debug)]
+pub struct Jumps {
+    /// The column of the first lock.
+    pub first: usize,
+    /// What each lock holds, and where it changes.
+    pub surfaces: Vec<KinkKind>,
+    /// The comparison while no lock changes: smooth.
+    pub between: Atom,
+}
+
 /// A condition in negation normal form: monotone in its atoms.
 #[derive(Clone, Debug)]
 pub enum Condition {
@@ -400,6 +412,8 @@ pub struct Atom {
     /// Whether g is continuous between events. If not (it has a floor, a sign, an `if`, an atan2, ... of something that
     /// moves), the rates hold only between its jumps: an interval of dg/dt then bounds nothing, an interval of g does.
     pub smooth: bool,
+    /// If it is not: where it jumps, and what it is between. None if that is not known (a term of an aggregate jumps).
+    pub jumps: Option<Box<Jumps>>,
     /// What is zero where dg/dt can jump (the argument of `abs`, the difference of those of `min` and `max`): where an
     /// interval of it contains zero, an interval of d2g/dt2 bounds nothing.
     pub turns: Option<FunctionId>,

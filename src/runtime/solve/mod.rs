@@ -10,6 +10,7 @@ pub mod tsit5;
 pub mod adams;
 pub mod integrate;
 mod bracket;
+mod curve;
 pub mod roots;
 pub mod polynomial;
 pub mod step_select;
