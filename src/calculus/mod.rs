@@ -9,6 +9,7 @@
 
 pub mod graph;
 mod relation;
+mod layout;
 pub mod system;
 mod simplify;
 pub mod evaluate;

