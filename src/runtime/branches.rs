@@ -140,6 +140,9 @@ struct Next {
     lock: f64,
 }
 
+/// A surface was searched in too many pieces.
+struct GivenUp;
+
 impl<'p> Jumping<'_, 'p> {
     /// The first change in (from, to], or at `from` where the boundary decides so; and if it is at a surface, the truths there.
     pub fn first_change(&mut self, from: f64, to: f64, mut known: Known) -> (Search, Option<Leap>) {
@@ -155,7 +158,7 @@ impl<'p> Jumping<'_, 'p> {
             if self.stays_clear(s, to, &known) {
                 return (Search::None, None);
             }
-            let next = self.next_surface(&own, s, to);
+            let Ok(next) = self.next_surface(&own, s, to) else { return (Search::Undecided, None) };
             if let Some(next) = next.filter(|next| next.flip.time <= s) {
                 // It leads there at once, though its first two rates did not say so.
                 own[next.column] = next.lock;
@@ -222,7 +225,7 @@ impl<'p> Jumping<'_, 'p> {
     }
 
     /// The surface that is met first in [s, e].
-    fn next_surface(&mut self, own: &[f64], s: f64, e: f64) -> Option<Next> {
+    fn next_surface(&mut self, own: &[f64], s: f64, e: f64) -> Result<Option<Next>, GivenUp> {
         let jumps = self.jumps;
         let mut first: Option<Next> = None;
         for (k, kind) in jumps.surfaces.iter().enumerate() {
@@ -236,26 +239,34 @@ impl<'p> Jumping<'_, 'p> {
             };
             for (atom, truth, lock) in changes.into_iter().flatten() {
                 let until = first.map_or(e, |first| first.flip.time);
-                if let Some(flip) = self.meets(atom, truth, own, s, until)
+                if let Some(flip) = self.meets(atom, truth, own, s, until)?
                     && first.is_none_or(|first| flip.time < first.flip.time)
                 {
                     first = Some(Next { flip, column, lock });
                 }
             }
         }
-        first
+        Ok(first)
     }
 
     /// When a surface is met in [s, e].
-    fn meets(&mut self, atom: &Atom, truth: bool, own: &[f64], s: f64, e: f64) -> Option<Flip> {
+    fn meets(
+        &mut self,
+        atom: &Atom,
+        truth: bool,
+        own: &[f64],
+        s: f64,
+        e: f64,
+    ) -> Result<Option<Flip>, GivenUp> {
         let closed = atom.relation == Relation::NonPositive;
         let known = Known { truth, closed, slack: 0.0, settled: true, grazed: true, reach: 2.0 * ulp(e) };
         let (mut from, pieces_max) = (s, self.pieces_max);
         let mut curve = self.curve(atom, own);
         loop {
             match first_flip(&mut curve, from, e, known, pieces_max) {
-                Search::None | Search::Undecided => return None,
-                Search::Flip(flip) => return Some(flip),
+                Search::None => return Ok(None),
+                Search::Undecided => return Err(GivenUp),
+                Search::Flip(flip) => return Ok(Some(flip)),
                 Search::Until(reached) => from = reached,
             }
         }
