@@ -74,7 +74,8 @@ fn rule_15_a_locked_flow_with_fresh_locks_is_the_flow_as_written() {
 #[test]
 fn rule_03_a_locked_guard_with_fresh_locks_is_the_guard_as_written_also_on_its_surfaces() {
     let mut random = Random(8);
-    let ops = random::numeric_ops();
+    // An angle of two operands that move is not compared at the origin, nor told which zero it is at its cut.
+    let ops: Vec<Op> = random::numeric_ops().into_iter().filter(|&op| op != Op::Atan2).collect();
     let (mut compared, mut jumping, mut on_a_surface) = (0, 0, 0);
     for _ in 0..3000 {
         let mut model = random::model();

@@ -305,8 +305,8 @@ impl<'a> Reference<'a> {
     /// Since when a flow slides along where it branches, s.
     fn slides(&self) -> Option<f64> {
         let (many, short) = SLIDING;
-        let runs = self.branchings.windows(many);
-        runs.into_iter().find(|run| run[many - 1] - run[0] < short).map(|run| run[0])
+        let mut runs = self.branchings.windows(many);
+        runs.find(|run| run[many - 1] - run[0] < short).map(|run| run[0])
     }
 
     /// Whether a guard hangs on a single point between the present time and this one.
