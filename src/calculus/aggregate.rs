@@ -3,6 +3,7 @@
 //! Numbers are lowered by a loop that cannot lower conditions; where it meets an aggregate it stops, the aggregate is
 //! lowered here, and the loop begins again with what it had.
 
+use crate::calculus::atom;
 use crate::calculus::build::{self, Halt};
 use crate::calculus::condition::{self, Cond, Lowering, Sense};
 use crate::calculus::derive;
@@ -122,7 +123,7 @@ fn term(draft: &mut Draft, scope: &Scope, term: NodeId, owner: &str) -> Term {
     let [first, second] = derive::rates(&mut draft.graph, term);
     let reach = draft.graph.reach(&[term]);
     Term {
-        smooth: guard::is_smooth(&draft.graph, &scope.frame, &reach),
+        smooth: atom::is_smooth(&draft.graph, &scope.frame, &reach),
         value: draft.function(|| format!("{owner} term"), vec![term]),
         rates: draft.function(|| format!("{owner} term rates"), vec![term, first, second]),
     }
@@ -145,7 +146,7 @@ fn surroundings(
         }
         slot
     };
-    let (mut reads, _) = guard::slots_read(&draft.graph, &scope.frame, &draft.graph.reach(&nodes));
+    let (mut reads, _) = atom::slots_read(&draft.graph, &scope.frame, &draft.graph.reach(&nodes));
     reads.retain(|&slot| !within.contains(&root(slot)));
     let mut roots: Vec<usize> = reads.iter().map(|&slot| root(slot)).collect();
     roots.sort_unstable();

@@ -69,8 +69,12 @@ impl Lowering<'_, '_> {
             (true, false) => graph.unary(Op::Neg, b),
             (false, false) => graph.binary(Op::Sub, a, b),
         };
-        let g = jumps::as_choices(graph, g);
-        self.opened(relation, g, span)
+        let choices = jumps::as_choices(graph, g);
+        if jumps::opens(graph, choices) {
+            return self.opened(relation, choices, span);
+        }
+        let whole = jumps::to_be_locked(graph, g);
+        self.whole(relation, whole, span)
     }
 
     /// The atom of g, or a choice between two comparisons if g has an `if` whose condition moves.
@@ -81,14 +85,7 @@ impl Lowering<'_, '_> {
             return self.less(relation, g, zero, span);
         }
         let Some(&choice) = jumps::choices(graph, g).last() else {
-            return match self.monotone_in(g) {
-                Some((number, leaf, slope)) => self.by_members(number, slope, |this, term| {
-                    let graph = &mut this.draft.graph;
-                    let (g, zero) = (jumps::replaced(graph, g, leaf, term), graph.number(0.0));
-                    this.less(relation, g, zero, span)
-                }),
-                None => self.atom(relation, g, span),
-            };
+            return self.whole(relation, g, span);
         };
         let Node::Select(c, u, v) = graph.node(choice) else { unreachable!("a choice is a select") };
         let (then, otherwise) = (jumps::replaced(graph, g, choice, u), jumps::replaced(graph, g, choice, v));
@@ -96,6 +93,18 @@ impl Lowering<'_, '_> {
             (self.of_node(c, Sense::Positive, span)?, self.of_node(c, Sense::Negative, span)?);
         let (then, otherwise) = (self.opened(relation, then, span)?, self.opened(relation, otherwise, span)?);
         Ok(self.either(holds, fails, then, otherwise))
+    }
+
+    /// The atom of g, or the condition of the members of the aggregate in which it is monotone.
+    fn whole(&mut self, relation: Relation, g: NodeId, span: Span) -> Result<Cond, Error> {
+        match self.monotone_in(g) {
+            Some((number, leaf, slope)) => self.by_members(number, slope, |this, term| {
+                let graph = &mut this.draft.graph;
+                let (g, zero) = (jumps::replaced(graph, g, leaf, term), graph.number(0.0));
+                this.less(relation, g, zero, span)
+            }),
+            None => self.atom(relation, g, span),
+        }
     }
 
     /// The condition that a boolean node stands for.

@@ -282,7 +282,7 @@ impl Lowering<'_, '_> {
     fn crossing(&mut self, env: EnvId, e: ExprId, sense: Sense, span: Span) -> Result<Cond, Error> {
         not_negated("crossing", sense, span)?;
         let g = self.number(env, e)?;
-        let g = jumps::as_choices(&mut self.draft.graph, g);
+        let g = jumps::to_be_locked(&mut self.draft.graph, g);
         self.sides = None;
         self.atom(Relation::Crossing, g, span)
     }

@@ -2,9 +2,10 @@
 //!
 //! `sign e` is `if 0 < e then 1 else if e < 0 then -1 else 0`. The angle of (x, y) is smooth on each side of its cut, as
 //! `atan2(y, x) = if 0 <= y then pi/2 - atan2(x, y) else atan2(x, -y) - pi/2`. An `if` whose condition moves is then a
-//! choice between two comparisons. What stays inside (`mod`, a `floor` within a sum) makes its atom not smooth.
+//! choice between two comparisons. Where something else jumps as well (`mod`, a `floor` within a sum) the comparison stays whole,
+//! and its branches are read from locks: see `locks`.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::calculus::graph::{Graph, Node, NodeId};
 use crate::calculus::system::Relation;
@@ -17,9 +18,40 @@ pub const CHOICES_MAX: usize = 6;
 pub fn as_choices(graph: &mut Graph, g: NodeId) -> NodeId {
     rebuild(graph, g, |graph, node, id| match node {
         Node::Unary(Op::Sign, e) if graph.moves(id) => Some(sign(graph, e)),
-        Node::Binary(Op::Atan2, y, x) if graph.moves(id) => Some(angle(graph, y, x)),
+        Node::Binary(Op::Atan2, y, x) if graph.moves(id) => {
+            let zero = graph.number(0.0);
+            let upper = graph.binary(Op::Le, zero, y);
+            Some(angle(graph, upper, y, x))
+        }
         _ => None,
     })
+}
+
+/// Whether nothing jumps in what is left of g when it is opened at its `if`s, and these are few enough.
+pub fn opens(graph: &Graph, g: NodeId) -> bool {
+    let (mut pending, mut seen) = (vec![g], FxHashSet::default());
+    while let Some(id) = pending.pop() {
+        if !seen.insert(id) {
+            continue;
+        }
+        match graph.node(id) {
+            Node::Select(c, a, b) if graph.moves(c) => pending.extend([a, b]),
+            _ if can_jump(graph, id) => return false,
+            Node::Unary(_, a) => pending.push(a),
+            Node::Binary(_, a, b) => pending.extend([a, b]),
+            Node::Select(c, a, b) => pending.extend([c, a, b]),
+            Node::Constant(_) | Node::Time | Node::State { .. } | Node::Rate { .. } => {}
+            Node::Acceleration { .. } | Node::Aux { .. } => {}
+        }
+    }
+    let is_choice = |&id: &NodeId| matches!(graph.node(id), Node::Select(c, ..) if graph.moves(c));
+    graph.reach(&[g]).iter().filter(|id| is_choice(id)).count() <= CHOICES_MAX
+}
+
+/// g in the form in which its branches are read from locks: as it is, or with the jumps of atan2 as `if`s if it has no others.
+pub fn to_be_locked(graph: &mut Graph, g: NodeId) -> NodeId {
+    let reach = graph.reach(&[g]);
+    if reach.into_iter().any(|id| can_jump(graph, id)) { g } else { as_choices(graph, g) }
 }
 
 /// The `if`s below g whose condition moves, innermost first; none if there are too many.
@@ -74,9 +106,9 @@ fn sign(graph: &mut Graph, e: NodeId) -> NodeId {
     graph.select(above, one, otherwise)
 }
 
-fn angle(graph: &mut Graph, y: NodeId, x: NodeId) -> NodeId {
-    let (zero, quarter) = (graph.number(0.0), graph.number(std::f64::consts::FRAC_PI_2));
-    let upper = graph.binary(Op::Le, zero, y);
+/// atan2(y, x), which is regular on each side of its cut: `upper` says on which it is.
+pub fn angle(graph: &mut Graph, upper: NodeId, y: NodeId, x: NodeId) -> NodeId {
+    let quarter = graph.number(std::f64::consts::FRAC_PI_2);
     let from_axis = graph.binary(Op::Atan2, x, y);
     let above = graph.binary(Op::Sub, quarter, from_axis);
     let down = graph.unary(Op::Neg, y);
@@ -125,5 +157,25 @@ pub fn whole_number(
             Some((Relation::Negative, graph.unary(Op::Floor, a), e))
         }
         _ => None,
+    }
+}
+
+/// Whether the value of a node can jump while its operands move continuously.
+pub fn can_jump(graph: &Graph, id: NodeId) -> bool {
+    let node = graph.node(id);
+    let moving = |id| graph.moves(id);
+    match node {
+        Node::Select(condition, ..) => moving(condition),
+        Node::Unary(op, a) | Node::Binary(op, a, _) => match op {
+            Op::Sign | Op::Floor | Op::Ceil | Op::Round | Op::Trunc | Op::Not => moving(a),
+            Op::Mod | Op::Lt | Op::Le | Op::Eq | Op::Ne | Op::And | Op::Or => moving(id),
+            Op::Neg | Op::Add | Op::Sub | Op::Mul | Op::Div | Op::Powi | Op::Pow | Op::Sin | Op::Cos => false,
+            Op::Tan | Op::Asin | Op::Acos | Op::Atan | Op::Sinh | Op::Cosh | Op::Tanh | Op::Asinh => false,
+            Op::Acosh | Op::Atanh | Op::Exp | Op::Log | Op::Log2 | Op::Log10 | Op::Sqrt | Op::Cbrt => false,
+            // The cut of atan2 has been taken out by an `if`, or by a lock.
+            Op::Atan2 | Op::Abs | Op::Min | Op::Max | Op::Hypot | Op::Select => false,
+        },
+        Node::Constant(_) | Node::Time | Node::State { .. } | Node::Rate { .. } => false,
+        Node::Acceleration { .. } | Node::Aux { .. } => false,
     }
 }

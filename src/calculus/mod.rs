@@ -10,6 +10,7 @@
 pub mod graph;
 mod relation;
 mod range;
+mod layout;
 pub mod system;
 mod simplify;
 pub mod evaluate;
@@ -23,6 +24,8 @@ mod jumps;
 mod condition;
 mod extremes;
 mod comparison;
+mod atom;
+mod locks;
 mod guard;
 mod aggregate;
 mod kinks;

@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use crate::base::{Arena, Idx, Span};
 use crate::calculus::graph::{Graph, NodeId};
+pub use crate::calculus::layout::Layout;
 pub use crate::calculus::range::{Near, Range};
 pub use crate::calculus::relation::Relation;
 use crate::math::Scale;
@@ -146,54 +147,6 @@ impl Slot {
         match self {
             Slot::Root { name, .. } | Slot::Link { name, .. } | Slot::Fold { name, .. } => name,
         }
-    }
-}
-
-/// The columns of an agent type.
-///
-/// Auxiliary columns in order: number, mode, time of entry, parameters, discretes, links, locks. Numbers of agents are
-/// held as reals, -1 for none. A lock holds the branch that a kink of the flow has taken (rule 15).
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Layout {
-    /// How many states.
-    pub n_states: usize,
-    /// How many parameters.
-    pub n_params: usize,
-    /// How many discrete variables.
-    pub n_discretes: usize,
-    /// How many links.
-    pub n_links: usize,
-    /// How many locks (the most that any mode needs).
-    pub n_locks: usize,
-}
-
-impl Layout {
-    /// Column of the agent's own number.
-    pub const NUMBER: usize = 0;
-    /// Column of the number of the (leaf) mode.
-    pub const MODE: usize = 1;
-    /// Column of the time at which the mode was entered, s.
-    pub const ENTRY: usize = 2;
-
-    /// Column of parameter k.
-    pub fn param(&self, k: usize) -> usize {
-        3 + k
-    }
-    /// Column of discrete variable k.
-    pub fn discrete(&self, k: usize) -> usize {
-        3 + self.n_params + k
-    }
-    /// Column of link k.
-    pub fn link(&self, k: usize) -> usize {
-        3 + self.n_params + self.n_discretes + k
-    }
-    /// Column of lock k.
-    pub fn lock(&self, k: usize) -> usize {
-        3 + self.n_params + self.n_discretes + self.n_links + k
-    }
-    /// How many auxiliary columns there are.
-    pub fn n_aux(&self) -> usize {
-        self.lock(self.n_locks)
     }
 }
 
@@ -343,6 +296,18 @@ pub enum KinkKind {
     },
 }
 
+/// Where a comparison jumps. Its branches are read from locks, auxiliary columns of self after its own; surfaces and g read
+/// those of the surfaces before them.
+#[derive(Clone, Debug)]
+pub struct Jumps {
+    /// The column of the first lock.
+    pub first: usize,
+    /// What each lock holds, and where it changes.
+    pub surfaces: Vec<KinkKind>,
+    /// The comparison while no lock changes: smooth.
+    pub between: Atom,
+}
+
 /// A condition in negation normal form: monotone in its atoms.
 #[derive(Clone, Debug)]
 pub enum Condition {
@@ -393,6 +358,8 @@ pub struct Atom {
     /// Whether g is continuous between events. If not (it has a floor, a sign, an `if`, an atan2, ... of something that
     /// moves), the rates hold only between its jumps: an interval of dg/dt then bounds nothing, an interval of g does.
     pub smooth: bool,
+    /// If it is not: where it jumps, and what it is between. None if that is not known (a term of an aggregate jumps).
+    pub jumps: Option<Box<Jumps>>,
     /// What is zero where dg/dt can jump (the argument of `abs`, the difference of those of `min` and `max`): where an
     /// interval of it contains zero, an interval of d2g/dt2 bounds nothing.
     pub turns: Option<FunctionId>,

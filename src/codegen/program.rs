@@ -6,7 +6,7 @@ use crate::calculus::system::Function;
 pub use crate::calculus::system::FunctionId;
 pub use crate::calculus::system::{
     ActionList, ActionStep, AgentSystem, Aggregate, Atom, ClaimKind, ClaimSystem, Column, Condition, Flow,
-    Fold, Frame, Guard, Integrator, InteractionSystem, Kink, KinkKind, Layout, LetSystem, LetValue,
+    Fold, Frame, Guard, Integrator, InteractionSystem, Jumps, Kink, KinkKind, Layout, LetSystem, LetValue,
     ModeSystem, Near, PairTransition, Population, Quantified, Range, Record, Relation, Run, Slot, Target,
     Term, TransitionSystem, Trigger, VarRef,
 };

@@ -2,16 +2,15 @@
 
 use rustc_hash::FxHashSet;
 
-use crate::codegen::kernel::{AgentBox, AgentView, Kernel};
+use crate::codegen::kernel::{AgentView, Kernel};
 use crate::codegen::program::{Atom, Relation, Trigger};
-use crate::math::Interval;
 use crate::runtime::act::Written;
 use crate::runtime::engine::{Due, Engine};
 use crate::runtime::failure::{Failure, Reason};
-use crate::runtime::fold::{self, Folded};
+use crate::runtime::fold::Folded;
 use crate::runtime::guards::{Origin, closed, inside};
 use crate::runtime::population::{ABSENT, Slots};
-use crate::runtime::present::{Boxes, Depth, Views, depth_read};
+use crate::runtime::present::{Depth, depth_read};
 use crate::runtime::solve::{time_resolution, ulp};
 use crate::runtime::truth::{self, Side, Truths};
 
@@ -132,8 +131,14 @@ impl<'p> Engine<'p, '_> {
         } else if unchanged && before.slack == 0.0 {
             // Off its boundary, and nothing that it reads has changed: only its rates have.
             before.truth
+        } else if let Some(jumps) = &atom.jumps {
+            let given_afresh = rule == Rule::Fresh || rule == Rule::Woken && !unchanged;
+            let side =
+                if given_afresh && atom.relation != Relation::Crossing { Side::At } else { Side::After };
+            self.truth_on(side, jumps, (&slots, &folds), before.truth)
         } else {
-            // Where g can jump, a bound of its rounding may be the height of the jump: then its sign is taken as it is.
+            // Where g can jump in a way that is not known, a bound of its rounding may be the height of the jump: then its sign
+            // is taken as it is.
             let rounding = if atom.smooth { self.rounding(kernel, &slots, &folds) } else { 0.0 };
             let clear = g.abs() > if unchanged { before.slack.max(rounding) } else { rounding };
             match rule {
@@ -228,62 +233,13 @@ impl<'p> Engine<'p, '_> {
             return g < 0.0;
         }
         state.slack = band;
-        let bounds = if atom.smooth { self.jet_rounding(kernel, slots, folds) } else { [0.0; 3] };
+        let bounds = if atom.smooth { self.jet_rounding(kernel, slots, folds, None) } else { [0.0; 3] };
         for order in 1..3 {
             if jet[order].abs() > bounds[order] {
                 return jet[order] < 0.0;
             }
         }
         closed(atom.relation, self.guards.atoms[index].truth)
-    }
-
-    /// What rounding may do to the single output of a kernel on the present rows.
-    fn rounding(&mut self, kernel: &Kernel, slots: &Slots, folds: &[Folded<'_>]) -> f64 {
-        let mut out = [Interval::WHOLE];
-        self.point_range(kernel, slots, folds, &mut out);
-        width(out[0])
-    }
-
-    fn jet_rounding(&mut self, kernel: &Kernel, slots: &Slots, folds: &[Folded<'_>]) -> [f64; 3] {
-        let mut out = [Interval::WHOLE; 3];
-        self.point_range(kernel, slots, folds, &mut out);
-        out.map(width)
-    }
-
-    /// The outputs of a kernel with the present rows as intervals without width.
-    fn point_range(&mut self, kernel: &Kernel, slots: &Slots, folds: &[Folded<'_>], out: &mut [Interval]) {
-        let involved = fold::involved(slots, folds);
-        let absent = self.present.view(&self.agents, ABSENT);
-        let views: Views<'_> =
-            involved.iter().map(|&agent| self.present.view(&self.agents, agent)).chain([absent]).collect();
-        self.points.clear();
-        for view in &views {
-            for row in [view.states, view.rates, view.accelerations] {
-                self.points.extend(row.iter().map(|&v| Interval { lo: v, hi: v }));
-            }
-        }
-        let mut rest = self.points.as_slice();
-        let mut take = |row: &[f64]| {
-            let (row, after) = rest.split_at(row.len());
-            rest = after;
-            row
-        };
-        let points: Boxes<'_> = views
-            .iter()
-            .map(|view| AgentBox {
-                states: take(view.states),
-                rates: take(view.rates),
-                accelerations: take(view.accelerations),
-                aux: view.aux,
-            })
-            .collect();
-        let row = |agent: usize| points[involved.binary_search(&agent).unwrap_or(involved.len())];
-        let time = Interval { lo: self.present.time, hi: self.present.time };
-        self.curves.ranges += 1;
-        self.curves.operations += 2 * kernel.operations();
-        let depth = depth_read(kernel);
-        let leaves = fold::leaf_ranges(self.program, folds, depth, time, &mut self.registers, &row);
-        kernel.range(&fold::boxes(slots, &leaves, &row), time, &mut self.registers, out);
     }
 
     /// The value of a kernel on the rows before the micro-step; none if a rate would be needed.
@@ -400,10 +356,4 @@ impl<'p> Engine<'p, '_> {
         }
         Ok(())
     }
-}
-
-/// What can be told of the size of rounding from a bound of a point.
-fn width(bound: Interval) -> f64 {
-    let width = bound.hi - bound.lo;
-    if width.is_finite() { width } else { 0.0 }
 }

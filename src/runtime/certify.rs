@@ -2,10 +2,11 @@
 use smallvec::SmallVec;
 
 use crate::codegen::program::Atom;
+use crate::runtime::branches::Jumping;
 use crate::runtime::detect::AtomCurve;
 use crate::runtime::engine::{Due, Engine};
 use crate::runtime::fold::{self, Folded};
-use crate::runtime::guards::closed;
+use crate::runtime::guards::{Leap, closed};
 use crate::runtime::observe::WhyUndecided;
 use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::Depth;
@@ -99,8 +100,8 @@ impl Engine<'_, '_> {
             grazed: state.grazed == from,
             reach: if blocked { time_resolution(to) } else { 2.0 * ulp(to) },
         };
-        let mut curve = AtomCurve::new(&self.agents, atom, &slots, &folds, &mut self.curves);
-        match first_flip(&mut curve, from, to, known, self.limits.pieces_max) {
+        let (search, leap) = self.search(atom, (&slots, &folds), from, to, known);
+        match search {
             Search::None => self.certified(index, to),
             Search::Until(until) => self.certified(index, until),
             Search::Undecided => {
@@ -118,6 +119,7 @@ impl Engine<'_, '_> {
                 state.flip = flip.time;
                 state.near = flip.near;
                 state.touch = flip.undecided;
+                state.leap = leap;
                 if flip.undecided {
                     state.grazed = flip.time;
                 }
@@ -125,6 +127,25 @@ impl Engine<'_, '_> {
                 self.queues.flips.push(Due { time: flip.time, number: index as u32, version: state.version });
             }
         }
+    }
+
+    /// The first change of a comparison in (from, to]; and its truths there, if that is where it jumps.
+    fn search(
+        &mut self,
+        atom: &Atom,
+        (slots, folds): (&Slots, &[Folded<'_>]),
+        from: f64,
+        to: f64,
+        known: Known,
+    ) -> (Search, Option<Leap>) {
+        let (pieces_max, interrupt) = (self.limits.pieces_max, self.interrupt);
+        let (agents, rows) = (&self.agents, &mut self.curves);
+        if let Some(jumps) = &atom.jumps {
+            let mut jumping = Jumping { agents, atom, jumps, slots, folds, rows, interrupt, pieces_max };
+            return jumping.first_change(from, to, known);
+        }
+        let mut curve = AtomCurve::new(agents, atom, slots, folds, rows).with_interrupt(interrupt);
+        (first_flip(&mut curve, from, to, known, pieces_max), None)
     }
 
     /// Notes that an atom does not change before `until`.

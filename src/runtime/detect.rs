@@ -1,5 +1,7 @@
 //! A comparison along the trajectories of the agents it reads: the curve on which roots are searched.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use smallvec::{SmallVec, smallvec};
 
 use crate::codegen::kernel::{AgentBox, AgentView};
@@ -43,6 +45,10 @@ pub struct AtomCurve<'a, 'p> {
     folds: &'a [Folded<'a>],
     /// The agents that are read, if there are aggregates; rising.
     involved: Vec<usize>,
+    /// The auxiliary columns of self with locks after them, where the comparison reads its branches from locks.
+    own: Option<&'a [f64]>,
+    /// Ends a search.
+    interrupt: Option<&'a AtomicBool>,
     rows: &'a mut CurveRows,
     width: usize,
 }
@@ -64,7 +70,17 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
             rows.numbers.resize(total, 0.0);
             rows.boxes.resize(total, Interval::WHOLE);
         }
-        Self { agents, atom, slots, folds, involved, rows, width }
+        Self { agents, atom, slots, folds, involved, own: None, interrupt: None, rows, width }
+    }
+
+    /// The same with these auxiliary columns of self.
+    pub fn with_own(self, own: &'a [f64]) -> Self {
+        Self { own: Some(own), ..self }
+    }
+
+    /// The same, given up when this is set.
+    pub fn with_interrupt(self, interrupt: &'a AtomicBool) -> Self {
+        Self { interrupt: Some(interrupt), ..self }
     }
 
     /// The jet of an atom with aggregates.
@@ -90,7 +106,11 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
         let leaves = fold::leaves(agents.program, self.folds, Depth::Accelerations, t, &row);
         let mut out = [0.0; 3];
         let kernel = agents.program.kernel(self.atom.rates);
-        kernel.eval(&fold::views(self.slots, &leaves, &row), t, &mut out);
+        let mut views = fold::views(self.slots, &leaves, &row);
+        if let Some(own) = self.own {
+            views[0].aux = own;
+        }
+        kernel.eval(&views, t, &mut out);
         out
     }
 
@@ -119,7 +139,11 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
         let leaves = fold::leaf_ranges(agents.program, self.folds, depth, time, registers, &row);
         let mut out = [Interval::WHOLE; 3];
         let kernel = agents.program.kernel(self.atom.rates);
-        kernel.range(&fold::boxes(self.slots, &leaves, &row), time, registers, &mut out);
+        let mut boxes = fold::boxes(self.slots, &leaves, &row);
+        if let Some(own) = self.own {
+            boxes[0].aux = own;
+        }
+        kernel.range(&boxes, time, registers, &mut out);
         out
     }
 }
@@ -147,7 +171,7 @@ impl Curve for AtomCurve<'_, '_> {
                 }
             }
         }
-        let views: Views<'_> = (0..self.slots.len())
+        let mut views: Views<'_> = (0..self.slots.len())
             .map(|slot| {
                 let agent = self.slots[slot];
                 if agent == ABSENT {
@@ -162,6 +186,9 @@ impl Curve for AtomCurve<'_, '_> {
                 }
             })
             .collect();
+        if let Some(own) = self.own {
+            views[0].aux = own;
+        }
         let mut out = [0.0; 3];
         self.agents.program.kernel(self.atom.rates).eval(&views, t, &mut out);
         out
@@ -169,6 +196,10 @@ impl Curve for AtomCurve<'_, '_> {
 
     fn smooth(&self) -> bool {
         self.atom.smooth
+    }
+
+    fn given_up(&self) -> bool {
+        self.interrupt.is_some_and(|interrupt| interrupt.load(Ordering::Relaxed))
     }
 
     fn jet_range(&mut self, s: f64, e: f64) -> [Interval; 3] {
@@ -222,7 +253,7 @@ impl AtomCurve<'_, '_> {
         self.rows.ranges += 1;
         self.rows.operations += 2 * self.agents.program.kernel(function).operations();
         let width = self.width;
-        let boxes: Boxes<'_> = (0..self.slots.len())
+        let mut boxes: Boxes<'_> = (0..self.slots.len())
             .map(|slot| {
                 let agent = self.slots[slot];
                 if agent == ABSENT {
@@ -237,6 +268,9 @@ impl AtomCurve<'_, '_> {
                 }
             })
             .collect();
+        if let Some(own) = self.own {
+            boxes[0].aux = own;
+        }
         self.agents.program.kernel(function).range(&boxes, time, &mut self.rows.registers, out);
     }
 

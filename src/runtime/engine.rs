@@ -312,6 +312,23 @@ impl<'p, 'o> Engine<'p, 'o> {
         f64::INFINITY
     }
 
+    /// Takes void entries out of the queues that have become much longer than there are things to be due.
+    pub fn compact_queues(&mut self) {
+        let Self { queues, guards, groups, .. } = self;
+        compact(&mut queues.uncertified, guards.atoms.len(), |due| {
+            guards.atoms[due.number as usize].version == due.version
+        });
+        compact(&mut queues.flips, guards.atoms.len(), |due| {
+            guards.atoms[due.number as usize].version == due.version
+        });
+        compact(&mut queues.schedules, guards.instances.len(), |due| {
+            guards.instances[due.number as usize].arming == due.version
+        });
+        compact(&mut queues.clocks, groups.groups.len(), |due| {
+            groups.groups[due.number as usize].clock == due.time
+        });
+    }
+
     /// Enters a group's clock into the queue.
     pub fn queue_clock(&mut self, group: usize) {
         let time = self.groups.groups[group].clock;
@@ -340,6 +357,13 @@ impl<'p, 'o> Engine<'p, 'o> {
             Origin::Pair(pair) => (&pair.transition.label, pair.transition.span),
             Origin::Claim(claim) => (claim.message.as_deref().unwrap_or("invariant"), claim.span),
         }
+    }
+}
+
+/// Takes out what is void from a queue with many entries for each of `n` things.
+fn compact(queue: &mut BinaryHeap<Due>, n: usize, is_valid: impl Fn(&Due) -> bool) {
+    if queue.len() > 4 * n + 1024 {
+        queue.retain(is_valid);
     }
 }
 

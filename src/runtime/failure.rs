@@ -236,6 +236,15 @@ pub enum Reason {
         /// The transition.
         span: Span,
     },
+    /// A priority that is not a number, so that it orders nothing.
+    BadPriority {
+        /// Where.
+        place: Place,
+        /// What made it so.
+        blame: Option<Blame>,
+        /// The transition.
+        span: Span,
+    },
     /// Nothing can happen any more, and no end is set.
     NeverEnds {
         /// When, s.
@@ -328,6 +337,13 @@ impl Reason {
                 place
                     .add_to(with_blame(diagnostic, blame.as_ref()))
                     .help("a delay must be finite and at least 0, a period finite and at least 1e-12 s")
+            }
+            Reason::BadPriority { place, blame, span } => {
+                let diagnostic = Diagnostic::error("HY0512", "a priority that is not a number")
+                    .label(*span, "of this transition");
+                place
+                    .add_to(with_blame(diagnostic, blame.as_ref()))
+                    .help("check the operands: a division of zero by zero, a root or logarithm of a negative number?")
             }
             Reason::NeverEnds { time } => {
                 Diagnostic::error("HY0511", "nothing can happen any more, and the run has no end")

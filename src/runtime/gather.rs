@@ -97,6 +97,7 @@ impl Engine<'_, '_> {
         self.present.go(time);
         let mut concerned: Vec<u32> = Vec::new();
         for &index in zeros {
+            self.guards.atoms[index].leap = None;
             self.flip(index, time);
             let state = &mut self.guards.atoms[index];
             state.slack = state.slack.max(tolerance);
@@ -220,14 +221,15 @@ impl Engine<'_, '_> {
         let folds = self.truths().gather(self.guards.atoms[index].instance, kernel, &slots, Side::After);
         let jet = { AtomCurve::new(&self.agents, atom, &slots, &folds, &mut self.curves).jet(time) };
         let state = &mut self.guards.atoms[index];
-        state.touched = match atom.relation {
-            Relation::NonPositive => state.truth,
-            Relation::Negative => false,
-            Relation::Crossing => true,
+        state.touched = match (atom.relation, state.leap) {
+            (Relation::Crossing, _) => true,
+            (Relation::NonPositive, None) => state.truth,
+            (Relation::Negative, _) | (Relation::NonPositive, Some(_)) => false,
         };
-        state.truth = !state.truth;
+        state.truth = state.leap.map_or(!state.truth, |leap| leap.after);
         state.rooted = true;
-        let slack = jet[1].abs() * time_resolution(time);
+        // Across a jump the rate says nothing of how near zero g is.
+        let slack = if state.leap.is_some() { 0.0 } else { jet[1].abs() * time_resolution(time) };
         self.recertify(index, root.max(time));
         let state = &mut self.guards.atoms[index];
         state.slack = if slack.is_finite() { slack } else { 0.0 };

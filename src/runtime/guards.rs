@@ -59,6 +59,8 @@ pub struct AtomState {
     pub touch: bool,
     /// When it last did so, s.
     pub grazed: f64,
+    /// If the flip, or the root that was the last one, is where g jumps: its truths there.
+    pub leap: Option<Leap>,
     /// The last time before the flip at which the old truth holds, s.
     pub near: f64,
     /// See `Known::slack`.
@@ -75,6 +77,15 @@ pub struct AtomState {
     pub version: u32,
 }
 
+/// The truths of a comparison at a surface and just after it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Leap {
+    /// At the very instant.
+    pub at: bool,
+    /// Just after it.
+    pub after: bool,
+}
+
 impl AtomState {
     /// Of an instance that has not been active.
     fn new(instance: u32) -> Self {
@@ -89,6 +100,7 @@ impl AtomState {
             near: 0.0,
             touch: false,
             grazed: f64::NEG_INFINITY,
+            leap: None,
             slack: 0.0,
             settled: false,
             stride: 0.0,

@@ -97,7 +97,7 @@ impl Engine<'_, '_> {
     fn choose(&mut self, candidates: &[Candidate]) -> Result<(Vec<Ranked>, Vec<Candidate>), Failure> {
         let mut ranked = Vec::with_capacity(candidates.len());
         for &candidate in candidates {
-            ranked.push(self.rank(candidate));
+            ranked.push(self.rank(candidate)?);
         }
         ranked.sort_by(|a, b| {
             let by_priority = b.priority.total_cmp(&a.priority);
@@ -129,19 +129,25 @@ impl Engine<'_, '_> {
         Ok((chosen, passed))
     }
 
-    fn rank(&mut self, candidate: Candidate) -> Ranked {
+    fn rank(&mut self, candidate: Candidate) -> Result<Ranked, Failure> {
         let slots = self.truths().witnesses(candidate.instance);
         let (transition, depth) = match self.guards.definition(candidate.instance).origin {
             Origin::Transition(transition) => (transition, transition.depth),
             Origin::Pair(pair) => (&pair.transition, 0),
             Origin::Claim(_) => unreachable!("claims are no candidates"),
         };
-        let priority = transition.priority.map_or(0.0, |function| {
+        let mut priority = 0.0;
+        if let Some(function) = transition.priority {
             let own = self.guards.roots(candidate.instance);
             let frame = &transition.frame;
-            truth::value(&self.agents, &mut self.present, function, frame, &slots, &own)
-        });
-        Ranked { candidate, slots, priority, depth, declaration: transition.declaration }
+            priority = truth::value(&self.agents, &mut self.present, function, frame, &slots, &own);
+            if priority.is_nan() {
+                let blame = self.blame(function, frame, &slots, &own);
+                let place = self.place(slots[0]);
+                return Err(Reason::BadPriority { place, blame, span: transition.span }.into());
+            }
+        }
+        Ok(Ranked { candidate, slots, priority, depth, declaration: transition.declaration })
     }
 
     /// Rule 5: two interactions that want the same column of one agent; said once.

@@ -11,7 +11,7 @@ pub struct Limits {
     pub steps_max: u64,
     /// `max_guards`: guard instances over pairs (all pairs are listed).
     pub guards_max: usize,
-    /// `max_pieces`: pieces into which a step is divided in search of a root of one guard.
+    /// `max_pieces`: how many pieces of time one search for a root of one guard looks at. A step may take several searches.
     pub pieces_max: u32,
 }
 

@@ -43,6 +43,7 @@ impl Engine<'_, '_> {
             rounds += 1;
             if rounds.is_multiple_of(ROUNDS) {
                 self.tell_progress()?;
+                self.compact_queues();
             }
             let cover = self.cover().min(until);
             self.certify_up_to(cover);

@@ -79,6 +79,12 @@ impl<'p> Truths<'_, 'p> {
 
     fn atom(&self, at: At, relation: Relation, index: usize) -> bool {
         let state = &self.guards.atoms[index];
+        if let (Some(leap), true) = (state.leap, state.rooted)
+            && at.side == Side::At
+            && relation != Relation::Crossing
+        {
+            return leap.at;
+        }
         match (relation, at.side) {
             (Relation::Crossing, side) => side == Side::At && state.touched,
             (Relation::NonPositive, Side::At) => state.truth || state.touched,
@@ -288,7 +294,7 @@ pub fn evaluate(
     folds: &[Folded<'_>],
 ) -> f64 {
     let mut out = [0.0];
-    outputs(agents, present, kernel, slots, folds, &mut out);
+    outputs(agents, present, kernel, slots, folds, None, &mut out);
     out[0]
 }
 
@@ -300,9 +306,21 @@ pub fn jet(
     slots: &Slots,
     folds: &[Folded<'_>],
 ) -> [f64; 3] {
+    jet_with(agents, present, kernel, slots, folds, None)
+}
+
+/// The same with these auxiliary columns of self instead of its own.
+pub fn jet_with(
+    agents: &Agents<'_>,
+    present: &mut Present,
+    kernel: &Kernel,
+    slots: &Slots,
+    folds: &[Folded<'_>],
+    own: Option<&[f64]>,
+) -> [f64; 3] {
     let mut out = [0.0; 3];
     present.make(agents, slots, Depth::Accelerations);
-    outputs(agents, present, kernel, slots, folds, &mut out);
+    outputs(agents, present, kernel, slots, folds, own, &mut out);
     out
 }
 
@@ -312,11 +330,16 @@ fn outputs(
     kernel: &Kernel,
     slots: &Slots,
     folds: &[Folded<'_>],
+    own: Option<&[f64]>,
     out: &mut [f64],
 ) {
     let leaves = leaves(agents, present, kernel, slots, folds);
     let row = |agent: usize| present.view(agents, agent);
-    kernel.eval(&fold::views(slots, &leaves, &row), present.time, out);
+    let mut views = fold::views(slots, &leaves, &row);
+    if let Some(own) = own {
+        views[0].aux = own;
+    }
+    kernel.eval(&views, present.time, out);
 }
 
 /// The values of the aggregates that a kernel reads; all rows that it needs are made.

@@ -27,6 +27,7 @@ mod lints;
 mod crowds;
 mod grazes;
 mod poles;
+mod jumps;
 mod closed_forms;
 mod bumper;
 mod accuracy;

@@ -216,6 +216,16 @@ fn a_delay_that_is_no_time_names_what_made_it() {
 }
 
 #[test]
+fn a_priority_that_is_no_number_names_what_made_it() {
+    let failed = fails(
+        "agent A { state x = 0  flow { x' = 1 }  go: when x >= 1 priority sqrt(0 - x) { x := 0 } }
+         system { a = A() }  run { until 3 }",
+        "HY0512",
+    );
+    assert_eq!(failed.pointed_at[1], "sqrt(0 - x)");
+}
+
+#[test]
 fn too_many_steps_show_where_the_last_agent_is() {
     let limits = hyc::runtime::Limits { steps_max: 50, ..Default::default() };
     let text = "agent A { state x = 0  flow { x' = cos(100*time) } }  system { a = A() }  run { until 30 }";

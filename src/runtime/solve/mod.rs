@@ -19,6 +19,7 @@ mod rodas5p;
 pub mod switch;
 pub mod integrate;
 mod bracket;
+mod curve;
 pub mod roots;
 pub mod polynomial;
 pub mod step_select;

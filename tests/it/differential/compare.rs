@@ -77,7 +77,7 @@ pub fn compare(text: &str, integrator: Integrator) -> Verdict {
     let ours = engine(&model, until);
     if difference(&ours, &fine, TIME, until).is_some() {
         // The reference may have missed an event between two steps, or rounding may decide what happens.
-        let shorter = Pace { step: 0.05 * STEP, ..usual };
+        let shorter = Pace { step: 0.02 * STEP, ..usual };
         let nudges = [NUDGE, -NUDGE].map(|nudge| Pace { nudge, ..half });
         for pace in [Pace { wary: true, ..half }, shorter, nudges[0], nudges[1]] {
             until = agreement(&refer(pace), &fine, until);

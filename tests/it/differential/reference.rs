@@ -40,6 +40,8 @@ pub struct History {
 
 /// More branches of flows than such a model has: the flows on both sides push back.
 const MANY_BRANCHES: usize = 300;
+/// So many branches in so short a time, s: the flow slides along where it branches, which has no solution by rule 15.
+const SLIDING: (usize, f64) = (10, 0.01);
 /// More events than a model worth comparing has in a run, and in an instant.
 const MANY: usize = 400;
 const MANY_IN_AN_INSTANT: usize = 40;
@@ -70,7 +72,8 @@ pub struct Reference<'a> {
     world: World,
     instances: Vec<Instance>,
     rows: Vec<Row>,
-    branchings: usize,
+    /// When a branch in a flow went another way, s.
+    branchings: Vec<f64>,
     end: f64,
 }
 
@@ -104,6 +107,7 @@ pub fn run(model: &Model, pace: Pace, ordered: impl Fn(&str) -> bool) -> History
     if goes_on.is_some() {
         until = reference.end;
     }
+    until = reference.slides().map_or(until, |since| until.min(since));
     History { rows: reference.rows, until, world: reference.world }
 }
 
@@ -138,7 +142,7 @@ impl<'a> Reference<'a> {
             }
         }
         let end = model.run.until.expect("the generator writes an end");
-        Self { model, world, instances, rows: Vec::new(), branchings: 0, end }
+        Self { model, world, instances, rows: Vec::new(), branchings: Vec::new(), end }
     }
 
     fn transition(&self, instance: usize) -> &'a Transition {
@@ -271,8 +275,13 @@ impl<'a> Reference<'a> {
                 }
             }
         }
-        self.branchings += usize::from(!straight);
-        if self.branchings > MANY_BRANCHES || pace.wary && self.hangs_on_a_point(after.time) {
+        if !straight {
+            self.branchings.push(after.time);
+        }
+        if self.branchings.len() > MANY_BRANCHES
+            || self.slides().is_some()
+            || pace.wary && self.hangs_on_a_point(after.time)
+        {
             return None;
         }
         self.world = after;
@@ -291,6 +300,13 @@ impl<'a> Reference<'a> {
         }
         self.arm();
         self.instant()
+    }
+
+    /// Since when a flow slides along where it branches, s.
+    fn slides(&self) -> Option<f64> {
+        let (many, short) = SLIDING;
+        let mut runs = self.branchings.windows(many);
+        runs.find(|run| run[many - 1] - run[0] < short).map(|run| run[0])
     }
 
     /// Whether a guard hangs on a single point between the present time and this one.

@@ -1,0 +1,49 @@
+//! Where the values of an agent stand: the columns of its rows, in order.
+
+/// The columns of an agent type.
+///
+/// Auxiliary columns in order: number, mode, time of entry, parameters, discretes, links, locks. Numbers of agents are
+/// held as reals, -1 for none. A lock holds the branch that a kink of the flow has taken (rule 15).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Layout {
+    /// How many states.
+    pub n_states: usize,
+    /// How many parameters.
+    pub n_params: usize,
+    /// How many discrete variables.
+    pub n_discretes: usize,
+    /// How many links.
+    pub n_links: usize,
+    /// How many locks (the most that any mode needs).
+    pub n_locks: usize,
+}
+
+impl Layout {
+    /// Column of the agent's own number.
+    pub const NUMBER: usize = 0;
+    /// Column of the number of the (leaf) mode.
+    pub const MODE: usize = 1;
+    /// Column of the time at which the mode was entered, s.
+    pub const ENTRY: usize = 2;
+
+    /// Column of parameter k.
+    pub fn param(&self, k: usize) -> usize {
+        3 + k
+    }
+    /// Column of discrete variable k.
+    pub fn discrete(&self, k: usize) -> usize {
+        3 + self.n_params + k
+    }
+    /// Column of link k.
+    pub fn link(&self, k: usize) -> usize {
+        3 + self.n_params + self.n_discretes + k
+    }
+    /// Column of lock k.
+    pub fn lock(&self, k: usize) -> usize {
+        3 + self.n_params + self.n_discretes + self.n_links + k
+    }
+    /// How many auxiliary columns there are.
+    pub fn n_aux(&self) -> usize {
+        self.lock(self.n_locks)
+    }
+}
