@@ -2,14 +2,12 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::base::Span;
 use crate::calculus::build;
 use crate::calculus::draft::Draft;
 use crate::calculus::evaluate;
 use crate::calculus::frame::Scope;
 use crate::calculus::graph::{Node, NodeId};
 use crate::calculus::kinks;
-use crate::calculus::locks::{self, Place, Purpose};
 use crate::calculus::system::{Kink, KinkKind};
 use crate::calculus::tests::random::{self, Point, Random};
 use crate::calculus::tests::simplification::leaf;
@@ -69,48 +67,6 @@ fn rule_15_a_locked_flow_with_fresh_locks_is_the_flow_as_written() {
         }
     }
     assert!(compared > 5_000 && kinked > 900, "{compared} {kinked}");
-}
-
-#[test]
-fn rule_03_a_locked_guard_with_fresh_locks_is_the_guard_as_written_also_on_its_surfaces() {
-    let mut random = Random(8);
-    // An angle of two operands that move is not compared at the origin, nor told which zero it is at its cut.
-    let ops: Vec<Op> = random::numeric_ops().into_iter().filter(|&op| op != Op::Atan2).collect();
-    let (mut compared, mut jumping, mut on_a_surface) = (0, 0, 0);
-    for _ in 0..3000 {
-        let mut model = random::model();
-        let depth = 1 + random.below(3);
-        let expr = random::number(&mut model, &mut random, &ops, depth);
-        let mut draft = Draft::new(&model);
-        let mut scope = Scope::of_self(TypeId::new(0));
-        let plain = build::number(&mut draft, &mut scope, Scope::TOP, expr).expect("no quantifiers");
-        let first = draft.layout(0).n_aux();
-        let (frame, spans, span) = (&scope.frame, &scope.spans, Span::default());
-        let place = Place { frame, first, spans, span, name: "test" };
-        let (locked, locks) = locks::lock(&mut draft, place, Purpose::Guard, &[plain]);
-        jumping += usize::from(!locks.is_empty());
-        for whole in [false, false, true, true] {
-            let mut at = point(&mut random);
-            if whole {
-                // Where surfaces are: at zero, and at halves.
-                at.states.iter_mut().for_each(|x| *x = (2.0 * *x).round() / 2.0);
-            }
-            let mut values = FxHashMap::default();
-            for (k, lock) in locks.iter().enumerate() {
-                let value = locked_value(&draft, lock.initial, &at, &values);
-                values.insert(first + k, value);
-            }
-            let expected = locked_value(&draft, plain, &at, &FxHashMap::default());
-            let found = locked_value(&draft, locked[&plain], &at, &values);
-            if expected.is_finite() && expected.abs() < 1e6 {
-                compared += 1;
-                on_a_surface += usize::from(whole && !locks.is_empty());
-                let close = (expected - found).abs() <= 1e-9 * (1.0 + expected.abs());
-                assert!(close, "{expected} {found}: {:?} at {at:?}", draft.graph.nodes());
-            }
-        }
-    }
-    assert!(compared > 4_000 && jumping > 500 && on_a_surface > 300, "{compared} {jumping} {on_a_surface}");
 }
 
 /// With fresh locks no surface says that the lock should change.
