@@ -345,9 +345,11 @@ pub fn cut(agents: &mut Agents<'_>, group: &mut Group, t: f64) {
             let mut states = std::mem::take(&mut agent.states);
             agent.segment.states(t, &mut states);
             agent.states = states;
-            agent.segment.end = t;
         }
         group.clock = t;
+    }
+    for &member in &group.members {
+        agents.agents[member].segment.cut(t);
     }
     group.integration.restart();
     group.version += 1;

@@ -92,6 +92,9 @@ impl Present {
             rows.made[0] = self.stamp;
             return;
         }
+        if agents.agents[number].segment.has_own_rates(self.time) {
+            return self.make_own_rates(agents, number);
+        }
         self.make_one(agents, number, if depth == Depth::Rates { Depth::States } else { Depth::Rates });
         let flow = agents.flow(number);
         let slots = agents.slots(&flow.frame, &[number]);
@@ -105,6 +108,18 @@ impl Present {
         self.rhs_evaluations += u64::from(depth == Depth::Rates);
         *self.row_mut(number, depth) = out;
         self.rows[number].made[depth as usize] = self.stamp;
+    }
+
+    /// The rates and second rates of an agent whose segment has its own.
+    fn make_own_rates(&mut self, agents: &Agents<'_>, number: usize) {
+        self.make_one(agents, number, Depth::States);
+        let segment = &agents.agents[number].segment;
+        let Rows { made, states, rates, accelerations } = &mut self.rows[number];
+        let mut on_segment = states.clone();
+        rates.resize(states.len(), 0.0);
+        accelerations.resize(states.len(), 0.0);
+        segment.jet(self.time, &mut on_segment, rates, accelerations);
+        (made[1], made[2]) = (self.stamp, self.stamp);
     }
 
     fn row_mut(&mut self, number: usize, depth: Depth) -> &mut Vec<f64> {

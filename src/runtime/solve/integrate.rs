@@ -225,7 +225,7 @@ impl Integrator {
     fn stiff_pays(&mut self, stretch: &Stretch, flow: &mut dyn Flow) -> bool {
         let (Some(stiff), x) = (&mut self.stiff, &self.trial.x_new) else { return false };
         let explicit = self.method.operations(self.method.depth()) + EXPLICIT_RATES;
-        let ratio = (Rodas5p::operations_of(&self.jacobian) + STIFF_RATES) as f64 / explicit as f64;
+        let ratio = (stiff.operations_with(&self.jacobian) + STIFF_RATES) as f64 / explicit as f64;
         let h = 2.0 * ratio * stretch.h;
         if stretch.end + h > self.stop {
             return false;

@@ -17,7 +17,7 @@ use crate::runtime::solve::control::Pace;
 use crate::runtime::solve::jacobian::Jacobian;
 use crate::runtime::solve::method::{Flow, Method, Start, Stretch, Trial};
 use crate::runtime::solve::segment::Segment;
-use crate::runtime::solve::shifted::Shifted;
+use crate::runtime::solve::shifted::{Plan, Shifted};
 
 #[cfg(test)]
 mod tests;
@@ -142,6 +142,8 @@ pub struct Rodas5p {
     /// df/dx and df/dt at the begin of the last trial.
     jacobian: Jacobian,
     time_rates: Vec<f64>,
+    /// How its linear systems are solved.
+    plan: Plan,
     /// 8 rows of n.
     u: Vec<f64>,
     /// The states of the stage at hand.
@@ -156,10 +158,15 @@ impl Rodas5p {
         &self.jacobian
     }
 
-    /// Operations of a step for each equation, without the right-hand sides: states of the stages 54, their right-hand
-    /// sides 66, dense output 51, its end 4, norm of the error 4, and its share of the linear systems.
-    pub fn operations_of(jacobian: &Jacobian) -> u64 {
-        179 + Shifted::operations(jacobian, STAGES as u64) / (jacobian.n as u64).max(1)
+    /// Operations of a step for each equation with such a Jacobian, without the right-hand sides: states of the stages 54,
+    /// their right-hand sides 66, dense output 51, its end 4, norm of the error 4, and its share of the linear systems.
+    pub fn operations_with(&mut self, jacobian: &Jacobian) -> u64 {
+        self.plan.suit(jacobian);
+        self.share(jacobian.n)
+    }
+
+    fn share(&self, n: usize) -> u64 {
+        179 + self.plan.operations(STAGES as u64) / (n as u64).max(1)
     }
 }
 
@@ -173,7 +180,7 @@ impl Method for Rodas5p {
     }
 
     fn operations(&self, _n_known: usize) -> u64 {
-        Self::operations_of(&self.jacobian)
+        self.share(self.jacobian.n)
     }
 
     fn step(&mut self, start: &Start<'_>, flow: &mut dyn Flow, trial: &mut Trial) {
@@ -185,7 +192,8 @@ impl Method for Rodas5p {
         self.time_rates.resize(n, 0.0);
         flow.jacobian(t, x, &mut self.jacobian);
         flow.time_rates(t, x, &mut self.time_rates);
-        let Some(system) = Shifted::new(&self.jacobian, 1.0 / (h * GAMMA)) else {
+        self.plan.suit(&self.jacobian);
+        let Some(system) = Shifted::new(&self.jacobian, &self.plan, 1.0 / (h * GAMMA)) else {
             return trial.rates.fill(f64::NAN);
         };
         for s in 0..STAGES {
@@ -224,6 +232,7 @@ impl Method for Rodas5p {
             c[0] = x[i];
             c[1..].copy_from_slice(&self.quartics[first + i]);
         }
+        segment.own_rates();
     }
 }
 

@@ -18,6 +18,8 @@ pub struct Segment {
     /// Coefficients of one state after the other, lowest power first.
     coefficients: Vec<f64>,
     n_coefficients: usize,
+    /// See [`Segment::has_own_rates`], s.
+    own_rates_until: Option<f64>,
 }
 
 /// The most coefficients of one state.
@@ -26,7 +28,8 @@ pub const N_MAX: usize = 24;
 impl Segment {
     /// A segment at rest at one instant: the state does not move from it.
     pub fn at(t: f64, x: &[f64]) -> Self {
-        Self { start: t, end: t, h: 1.0, coefficients: x.to_vec(), n_coefficients: 1 }
+        let coefficients = x.to_vec();
+        Self { start: t, end: t, h: 1.0, coefficients, n_coefficients: 1, own_rates_until: None }
     }
 
     /// Prepares for a step of length `h` from `t` with `n` coefficients a state, to be filled in.
@@ -36,9 +39,27 @@ impl Segment {
         self.end = end;
         self.h = h;
         self.n_coefficients = n;
+        self.own_rates_until = None;
         self.coefficients.clear();
         self.coefficients.resize(n * n_states, 0.0);
         &mut self.coefficients
+    }
+
+    /// Makes it one whose own derivatives are its rates: a stiff flow answers an error of its states, however small, by
+    /// rates that the solution does not have.
+    pub fn own_rates(&mut self) {
+        self.own_rates_until = Some(self.end);
+    }
+
+    /// Whether the rates at `t` are its own derivatives, not what the flow says of its states.
+    pub fn has_own_rates(&self, t: f64) -> bool {
+        self.own_rates_until.is_some_and(|until| t <= until)
+    }
+
+    /// Ends it at `t`, where the flow begins afresh.
+    pub fn cut(&mut self, t: f64) {
+        self.end = t;
+        self.own_rates_until = self.own_rates_until.map(|until| until.min(t.next_down()));
     }
 
     /// The states at `t`; `x` has one place for each.

@@ -23,12 +23,56 @@ pub enum Shifted {
 /// Up to so many equations no other order is looked for: a dense decomposition takes no longer than that.
 const FEW: usize = 32;
 
+/// How systems of one pattern of entries are decomposed; made once for all that come one after the other.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    n: usize,
+    /// Rows and columns of the entries.
+    pattern: Vec<(usize, usize)>,
+    /// The order of the equations, and how far below and above the diagonal entries lie; none: dense.
+    band: Option<(Vec<usize>, (usize, usize))>,
+}
+
+impl Plan {
+    /// Makes it one for this Jacobian.
+    pub fn suit(&mut self, jacobian: &Jacobian) {
+        let pattern = jacobian.entries.iter().map(|entry| (entry.row, entry.column));
+        if self.n == jacobian.n && pattern.clone().eq(self.pattern.iter().copied()) {
+            return;
+        }
+        self.n = jacobian.n;
+        self.pattern.clear();
+        self.pattern.extend(pattern);
+        self.band = None;
+        if self.n > FEW {
+            let order = cuthill_mckee::order(jacobian);
+            let widths = cuthill_mckee::widths(jacobian, &order);
+            if 2 * Banded::operations(self.n, widths, 1) < dense_operations(self.n, 1) {
+                self.band = Some((order, widths));
+            }
+        }
+    }
+
+    /// How many operations it takes to decompose, and to solve for so many right-hand sides.
+    pub fn operations(&self, n_rhs: u64) -> u64 {
+        match &self.band {
+            Some((_, widths)) => Banded::operations(self.n, *widths, n_rhs),
+            None => dense_operations(self.n, n_rhs),
+        }
+    }
+}
+
+fn dense_operations(n: usize, n_rhs: u64) -> u64 {
+    let n = n as u64;
+    2 * n * n * n / 3 + n_rhs * 2 * n * n
+}
+
 impl Shifted {
-    /// Decomposes s I - J; none if it is singular.
-    pub fn new(jacobian: &Jacobian, shift: f64) -> Option<Self> {
+    /// Decomposes s I - J by a plan that suits J; none if it is singular.
+    pub fn new(jacobian: &Jacobian, plan: &Plan, shift: f64) -> Option<Self> {
         let n = jacobian.n;
         let finite = jacobian.entries.iter().filter(|entry| entry.value.is_finite());
-        let Some((order, (below, above))) = band(jacobian) else {
+        let Some((order, (below, above))) = &plan.band else {
             let mut matrix = DMatrix::from_diagonal_element(n, n, shift);
             finite.for_each(|entry| matrix[(entry.row, entry.column)] -= entry.value);
             let lu = LU::new(matrix);
@@ -36,18 +80,10 @@ impl Shifted {
         };
         let mut place = vec![0; n];
         order.iter().enumerate().for_each(|(new, &old)| place[old] = new);
-        let mut matrix = Banded::zeros(n, below, above);
+        let mut matrix = Banded::zeros(n, *below, *above);
         (0..n).for_each(|k| *matrix.entry(k, k) = shift);
         finite.for_each(|entry| *matrix.entry(place[entry.row], place[entry.column]) -= entry.value);
-        matrix.decompose().then_some(Shifted::Banded(order, matrix))
-    }
-
-    /// How many operations it takes to decompose, and to solve for so many right-hand sides.
-    pub fn operations(jacobian: &Jacobian, n_rhs: u64) -> u64 {
-        match band(jacobian) {
-            Some((_, widths)) => Banded::operations(jacobian.n, widths, n_rhs),
-            None => dense_operations(jacobian.n, n_rhs),
-        }
+        matrix.decompose().then_some(Shifted::Banded(order.clone(), matrix))
     }
 
     /// Replaces the right-hand side by the solution.
@@ -65,22 +101,6 @@ impl Shifted {
             }
         }
     }
-}
-
-/// An order in which the entries lie in a band that pays, and how far below and above the diagonal it reaches.
-fn band(jacobian: &Jacobian) -> Option<(Vec<usize>, (usize, usize))> {
-    if jacobian.n <= FEW {
-        return None;
-    }
-    let order = cuthill_mckee::order(jacobian);
-    let widths = cuthill_mckee::widths(jacobian, &order);
-    let pays = 2 * Banded::operations(jacobian.n, widths, 1) < dense_operations(jacobian.n, 1);
-    pays.then_some((order, widths))
-}
-
-fn dense_operations(n: usize, n_rhs: u64) -> u64 {
-    let n = n as u64;
-    2 * n * n * n / 3 + n_rhs * 2 * n * n
 }
 
 #[cfg(test)]
@@ -103,12 +123,22 @@ mod tests {
         jacobian
     }
 
+    fn shifted(jacobian: &Jacobian, shift: f64) -> Option<Shifted> {
+        Shifted::new(jacobian, &plan(jacobian), shift)
+    }
+
+    fn plan(jacobian: &Jacobian) -> Plan {
+        let mut plan = Plan::default();
+        plan.suit(jacobian);
+        plan
+    }
+
     /// The largest part of (s I - J) u - r, beside those of the matrix and of u.
     #[track_caller]
     fn residual(jacobian: &Jacobian, shift: f64) -> f64 {
         let rhs: Vec<f64> = (0..jacobian.n).map(|k| value(k, k + 3)).collect();
         let mut u = rhs.clone();
-        Shifted::new(jacobian, shift).expect("regular").solve(&mut u);
+        shifted(jacobian, shift).expect("regular").solve(&mut u);
         let mut left: Vec<f64> = u.iter().map(|u| shift * u).collect();
         jacobian.entries.iter().for_each(|entry| left[entry.row] -= entry.value * u[entry.column]);
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |a: f64, b| a.max(b.abs()));
@@ -120,7 +150,7 @@ mod tests {
     fn dense_systems_are_solved() {
         for n in [1, 2, 3, 8, 50] {
             let jacobian = jacobian(n, |_, _| true);
-            assert!(matches!(Shifted::new(&jacobian, 0.3), Some(Shifted::Dense(_))));
+            assert!(matches!(shifted(&jacobian, 0.3), Some(Shifted::Dense(_))));
             assert!(residual(&jacobian, 0.3) < 1e-14);
         }
     }
@@ -131,8 +161,19 @@ mod tests {
         for (below, above) in [(1, 1), (3, 0), (0, 2), (2, 3)] {
             let jacobian =
                 jacobian(60, |row, column| row + above >= column && row <= column + below && row != column);
-            assert!(matches!(Shifted::new(&jacobian, 0.3), Some(Shifted::Banded(..))), "{below} {above}");
+            assert!(matches!(shifted(&jacobian, 0.3), Some(Shifted::Banded(..))), "{below} {above}");
             assert!(residual(&jacobian, 0.3) < 1e-14, "{below} {above}");
+        }
+    }
+
+    #[test]
+    fn a_plan_serves_all_of_its_pattern_and_is_made_anew_for_another() {
+        let mut kept = Plan::default();
+        for (below, above) in [(1, 1), (1, 1), (3, 0), (60, 60), (1, 1)] {
+            let jacobian = jacobian(60, |row, column| row + above >= column && row <= column + below);
+            kept.suit(&jacobian);
+            let afresh = plan(&jacobian);
+            assert_eq!((kept.n, &kept.pattern, &kept.band), (afresh.n, &afresh.pattern, &afresh.band));
         }
     }
 
@@ -143,8 +184,8 @@ mod tests {
             let mut singular = Jacobian::default();
             singular.reset(n);
             one.entries.iter().for_each(|entry| singular.push(entry.row, entry.column, 1.0));
-            assert!(Shifted::new(&singular, 1.0).is_none());
-            assert!(Shifted::new(&singular, 2.0).is_some());
+            assert!(shifted(&singular, 1.0).is_none());
+            assert!(shifted(&singular, 2.0).is_some());
         }
     }
 
@@ -154,14 +195,14 @@ mod tests {
         jacobian.reset(1);
         jacobian.push(0, 0, f64::NEG_INFINITY);
         let mut u = [6.0];
-        Shifted::new(&jacobian, 2.0).expect("regular").solve(&mut u);
+        shifted(&jacobian, 2.0).expect("regular").solve(&mut u);
         assert_eq!(u, [3.0]);
     }
 
     #[test]
     fn a_band_takes_operations_in_proportion_to_its_length() {
         let chain = |n| jacobian(n, |row, column| row.abs_diff(column) <= 1);
-        let (short, long) = (Shifted::operations(&chain(100), 8), Shifted::operations(&chain(1000), 8));
+        let (short, long) = (plan(&chain(100)).operations(8), plan(&chain(1000)).operations(8));
         assert_eq!(long, 10 * short);
         assert!(100 * long < dense_operations(1000, 8));
     }

@@ -25,15 +25,15 @@ fn the_reference_is_the_published_solution() {
 
 #[test]
 fn it_creeps_and_jumps_when_the_reference_says() {
-    let thresholds = [(0, 1.5), (0, 0.0), (1, 100.0)];
+    let thresholds = [(0, 1.5), (0, 0.0), (0, 1.0), (1, 100.0)];
     let crossings = |tolerance| VAN_DER_POL.crossings(BEGIN, 4000.0, (tolerance, FLOOR), &thresholds);
     let (reference, coarse) = (crossings(1e-10), crossings(1e-9));
     let every_other =
         |times: &[f64], first: usize| -> Vec<f64> { times.iter().skip(first).step_by(2).copied().collect() };
     for integrator in [Integrator::Auto, Integrator::Stiff] {
         let run = Case::shipped("van_der_pol.hy").integrator(integrator).run();
-        // x passes 1.5 downwards, then on the jump back upwards; zero downwards, then upwards; y 100 upwards first
-        for (name, k, first) in [("near", 0, 0), ("falls", 1, 0), ("rises", 1, 1), ("flash", 2, 0)] {
+        // each threshold is passed one way and the other, by turns
+        for (name, k, first) in [("near", 0, 0), ("falls", 1, 0), ("rises", 2, 1), ("flash", 3, 0)] {
             let (expected, coarse) = (every_other(&reference[k], first), every_other(&coarse[k], first));
             let times = run.times(&format!("Oscillator.{name}"));
             assert_eq!(times.len(), expected.len(), "{name}: {times:?} {expected:?}");
