@@ -25,7 +25,7 @@ impl Engine<'_, '_> {
         }
         let state = self.guards.atoms[index];
         let (from, truth) = (state.certified, state.truth);
-        let end = if self.time_end.is_finite() { self.time_end } else { from + 1e6 };
+        let end = if self.time_end.is_finite() { self.time_end } else { least.max(from + 1e6) };
         let least = least.min(end);
         let mut until = if state.stride > 0.0 { (from + state.stride).clamp(least, end) } else { end };
         for attempt in 0..TRIES {

@@ -4,6 +4,7 @@
 //! ([`crate::runtime::near_pairs`]), and those agents run ahead that no guard can concern in the window
 //! ([`crate::runtime::hot`]). A window cuts no step: its length changes no bit of any.
 
+use crate::runtime::certify::ENDLESS;
 use crate::runtime::cold::Cold;
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
@@ -35,6 +36,9 @@ impl Engine<'_, '_> {
         let mut length = FIRST_WINDOW * self.horizon();
         loop {
             let from = self.present.time;
+            if from > ENDLESS {
+                return Err(Reason::NeverEnds { time: from }.into());
+            }
             if self.has_fields() && self.neighbours.until <= from {
                 let span = self.neighbours.span;
                 let new = self.list_pairs((from + span).min(self.time_end))?;

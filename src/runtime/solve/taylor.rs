@@ -109,6 +109,7 @@ impl Method for Taylor {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::runtime::solve::jacobian::Jacobian;
     use crate::runtime::solve::method::{Past, Tsit5Rows};
 
     /// x' = x, whose coefficients are x / k!.
@@ -127,6 +128,15 @@ mod tests {
             rows.coefficients = x.to_vec();
             (1..=order).for_each(|k| rows.coefficients.push(rows.coefficients[k - 1] / k as f64));
             true
+        }
+
+        fn jacobian(&mut self, _t: f64, _x: &[f64], jacobian: &mut Jacobian) {
+            jacobian.reset(1);
+            jacobian.push(0, 0, 1.0);
+        }
+
+        fn time_rates(&mut self, _t: f64, _x: &[f64], rates: &mut [f64]) {
+            rates[0] = 0.0;
         }
     }
 
