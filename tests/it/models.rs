@@ -10,6 +10,9 @@ mod collide_and_stick;
 mod billiards;
 mod epidemic;
 mod platoon;
+mod double_crossing;
+mod multirate;
+mod interlock;
 
 use crate::harness::{Case, Ended, near};
 
