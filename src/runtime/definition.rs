@@ -106,7 +106,8 @@ pub fn definitions<'p>(agents: &Agents<'p>) -> Vec<Definition<'p>> {
     definitions
 }
 
-fn guard_of(transition: &TransitionSystem) -> Option<&Guard> {
+/// The condition of a transition, if it has one.
+pub fn guard_of(transition: &TransitionSystem) -> Option<&Guard> {
     match &transition.trigger {
         Trigger::When(guard) => Some(guard),
         Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
@@ -173,7 +174,7 @@ fn define<'p>(
 }
 
 /// The aggregates that a guard reads, and those that these read; rising.
-fn folds_read(program: &Program, frame: &Frame, guard: &Guard) -> Vec<usize> {
+pub fn folds_read(program: &Program, frame: &Frame, guard: &Guard) -> Vec<usize> {
     let mut read = vec![false; frame.folds.len()];
     mark(program, frame, guard, &mut read);
     for number in (0..read.len()).rev() {

@@ -18,7 +18,9 @@ fn agrees(run: &Run, n: usize) {
     assert_eq!(run.events.len(), 2 * n, "{:?}", run.log());
     for k in 0..n {
         let agent = format!("balls[{k}]");
-        for (transition, expected) in ["Ball.up", "Ball.down"].into_iter().zip(passes(0.1f64.powi(k as i32 + 1))) {
+        for (transition, expected) in
+            ["Ball.up", "Ball.down"].into_iter().zip(passes(0.1f64.powi(k as i32 + 1)))
+        {
             let times = run.times_of(transition, &agent);
             assert_eq!(times.len(), 1, "{transition} of {agent}");
             // an error of rounding in x is one of its size over the speed at the bar in the time
@@ -42,7 +44,8 @@ fn no_step_ends_between_the_two() {
     // the same flights without the barrier: every accepted step is a row
     let path = format!("{}/models/double_crossing.hy", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(path).unwrap();
-    let text = text.replace("when x >= bar", "when x >= 2*bar").replace("record Ball every 0.01 [s]", "record Ball");
+    let text =
+        text.replace("when x >= bar", "when x >= 2*bar").replace("record Ball every 0.01 [s]", "record Ball");
     let run = Case::new(&text).run();
     assert!(run.events.is_empty());
     let above = |k: usize| run.column(&format!("balls[{k}]"), 0).iter().any(|(_, x)| *x >= BAR);
