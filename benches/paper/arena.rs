@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hyc::cli::compare::measure::{Measured, agreement, measure};
+use hyc::cli::compare::measure::{self, Measured};
 use hyc::cli::compare::table::geometric_mean;
 use hyc::cli::compare::{TIGHT, WITHIN};
 use hyc::codegen::program::Program;
@@ -19,7 +19,8 @@ pub const UNTIL: f64 = 20.0;
 /// Random initial conditions of each size, seeds 1 to 10.
 pub const SEEDS: u64 = 10;
 const TOLERANCES: [f64; 3] = [1e-3, 1e-4, 1e-5];
-const SIZES: std::ops::RangeInclusive<usize> = 2..=20;
+/// Numbers of cars.
+pub const SIZES: std::ops::RangeInclusive<usize> = 2..=20;
 
 /// One scenario under all three algorithms.
 pub struct Trio {
@@ -51,14 +52,14 @@ impl Trio {
     }
 
     /// The same for `masim`.
-    fn s_masim(&self, cost: Cost) -> f64 {
+    pub fn s_masim(&self, cost: Cost) -> f64 {
         cost(&self.masim) / cost(&self.sa)
     }
 }
 
 /// A program under an algorithm; one that stops in error ends the process.
 pub fn run(program: &mut Program, algorithm: Algorithm, tolerance: f64, audit: bool) -> Measured {
-    measure(program, algorithm, tolerance, &Limits::default(), audit)
+    measure::measure(program, algorithm, tolerance, &Limits::default(), audit)
         .unwrap_or_else(|diagnostic| panic!("{diagnostic:#?}"))
 }
 
@@ -114,7 +115,7 @@ fn rows(csv: &mut String, trio: &Trio, tight: &Measured) {
             trio.seed,
             trio.tolerance,
             run.events.len(),
-            agreement(&run.events, &tight.events, WITHIN),
+            measure::agreement(&run.events, &tight.events, WITHIN),
             tight.events.len(),
             stats.steps,
             stats.rhs_evaluations,

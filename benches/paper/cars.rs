@@ -1,11 +1,14 @@
-//! The bumper arena of `models/bumper.hy` for any number of cars, seed and spread of time scales, through the doors of the
-//! library.
+//! The bumper arena of `models/bumper.hy` for any number of cars, seed and spread of time scales, and the other models, through
+//! the doors of the library.
+//!
+//! `masim` is run by `tsit5` here, whatever `auto` comes to; the algorithms of 2004 have Adams' method only.
 
 use std::io;
 
 use hyc::base::SourceMap;
 use hyc::codegen::program::Program;
 use hyc::codegen::{self, Backend};
+use hyc::model::ir::Integrator;
 use hyc::model::{Files, Settings};
 
 /// The ratio of the fastest to the slowest weaving that the benchmark has.
@@ -48,8 +51,9 @@ impl Files for Data {
     }
 }
 
-/// Compiles a model; what is wrong with it ends the process.
-pub fn compile(text: &str, data: String, settings: &Settings) -> Program {
+/// Compiles a model, to be run by `tsit5`; what is wrong with it ends the process.
+fn compile(text: &str, data: String, settings: Settings) -> Program {
+    let settings = &Settings { integrator: Some(Integrator::Tsit5), ..settings };
     let mut sources = SourceMap::default();
     let file = sources.add("model.hy", text);
     let ast = hyc::syntax::parse(file, text).expect("the model is right");
@@ -64,11 +68,17 @@ pub fn bumper(n: usize, seed: u64, spread: f64, until: f64, record: bool) -> Pro
     let text = include_str!("../../models/bumper.hy");
     let params = vec![("N".into(), n.to_string())];
     let settings = Settings { params, until: Some(until), record_all: record, ..Settings::default() };
-    compile(text, cars(n, seed, spread), &settings)
+    compile(text, cars(n, seed, spread), settings)
 }
 
 /// One of the models with two cars, with every accepted step recorded.
 pub fn two_cars(text: &str, until: f64) -> Program {
     let text = text.replace("record fast, slow every 0.05 [s]", "record fast, slow");
-    compile(&text, String::new(), &Settings { until: Some(until), ..Settings::default() })
+    compile(&text, String::new(), Settings { until: Some(until), ..Settings::default() })
+}
+
+/// A model without data, with some of its params given.
+pub fn shipped(text: &str, params: &[(&str, String)]) -> Program {
+    let params = params.iter().map(|(name, value)| (name.to_string(), value.clone())).collect();
+    compile(text, String::new(), Settings { params, ..Settings::default() })
 }

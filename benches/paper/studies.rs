@@ -14,7 +14,8 @@ use crate::report::Report;
 pub fn spread(report: &mut Report, tick: &dyn Fn(&str)) {
     const SPREADS: [f64; 4] = [1.0, 4.0, 40.0, 400.0];
     let mut text = String::from(
-        "| spread of w | S in right-hand sides | in operations | in CPU time |\n|---:|---:|---:|---:|\n",
+        "| spread of w | S in right-hand sides | in operations | in CPU time | `masim` / sasim-2004: rhs / operations / CPU |\n\
+         |---:|---:|---:|---:|---|\n",
     );
     let mut lines = COSTS.map(|(name, _)| (name, Vec::new()));
     for spread in SPREADS {
@@ -23,7 +24,9 @@ pub fn spread(report: &mut Report, tick: &dyn Fn(&str)) {
             .map(|seed| trio(&mut bumper(20, seed, spread, UNTIL, false), 20, seed, 1e-5, false))
             .collect();
         let s = COSTS.map(|(_, cost)| mean(&trios, |_| true, |t| t.s(cost)));
-        let _ = writeln!(text, "| {spread} | {:.2} | {:.2} | {:.2} |", s[0], s[1], s[2]);
+        let masim =
+            COSTS.map(|(_, cost)| format!("{:.3}", mean(&trios, |_| true, |t| t.s_masim(cost)))).join(" / ");
+        let _ = writeln!(text, "| {spread} | {:.2} | {:.2} | {:.2} | {masim} |", s[0], s[1], s[2]);
         for ((_, points), s) in lines.iter_mut().zip(s) {
             points.push((spread.log10(), s));
         }
@@ -101,6 +104,12 @@ pub fn gamma(report: &mut Report, tick: &dyn Fn(&str)) {
         misses.push((gamma, (missed + late) as f64));
         steps.push((gamma, mean));
     }
+    tick("masim");
+    let masim = (1..=SEEDS)
+        .map(|seed| run(&mut bumper(20, seed, SPREAD, UNTIL, false), Algorithm::Masim, 1e-4, false))
+        .map(|run| run.stats.steps as f64)
+        .sum::<f64>();
+    let _ = writeln!(text, "| `masim` | | | | | {:.0} |", masim / SEEDS as f64);
     report.table("gamma", &text);
     figure(
         "gamma",

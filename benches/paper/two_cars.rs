@@ -51,11 +51,13 @@ pub fn figures(report: &mut Report) {
         let mut program = two_cars(text, until);
         let run = measure(&mut program, Algorithm::Masim2004(paper), 1e-5, &Limits::default(), true)
             .expect("the cars can be simulated");
+        let masim = measure(&mut program, Algorithm::Masim, 1e-5, &Limits::default(), false)
+            .expect("the cars can be simulated");
         let event = run.events.first().map(|event| event.time);
         let until = event.unwrap_or(until);
         let steps = steps(&run, until);
         draw(first, second, &run, &steps, until);
-        tell(report, first, event, &steps);
+        tell(report, first, event, &steps, &masim);
     }
 }
 
@@ -105,7 +107,7 @@ fn draw(first: &str, second: &str, run: &Measured, steps: &[Step], until: f64) {
 }
 
 /// The approach in numbers.
-fn tell(report: &mut Report, name: &str, event: Option<f64>, steps: &[Step]) {
+fn tell(report: &mut Report, name: &str, event: Option<f64>, steps: &[Step], masim: &Measured) {
     let nearest = steps.iter().enumerate().min_by(|a, b| a.1.g.abs().total_cmp(&b.1.g.abs()));
     let Some((k, nearest)) = nearest else { return };
     let close: Vec<&Step> = steps.iter().filter(|step| step.g > 1e-5 && step.g < 0.02).collect();
@@ -114,9 +116,23 @@ fn tell(report: &mut Report, name: &str, event: Option<f64>, steps: &[Step]) {
         hyc::cli::compare::table::geometric_mean(ratios.into_iter())
     };
     let lag = |steps: &mut dyn Iterator<Item = &Step>| steps.map(|step| step.tau).fold(0.0, f64::max);
+    let time = |event: Option<f64>| event.map_or("none".into(), |t| format!("{t:.4}"));
+    let of_masim = masim.events.first().map(|event| event.time);
+    let until = of_masim.unwrap_or(f64::INFINITY);
+    let steps_of_masim: usize = (0..2)
+        .map(|car| {
+            let rows = masim.rows.iter().filter(|row| row.agent == car && row.time <= until);
+            let mut times: Vec<f64> = rows.map(|row| row.time).collect();
+            // An event has two rows; the first row is where the car starts.
+            times.dedup();
+            times.len() - 1
+        })
+        .sum();
     let rows = vec![
-        ("event at, s".to_string(), event.map_or("none".into(), |t| format!("{t:.4}"))),
+        ("event at, s".to_string(), time(event)),
+        ("event at by `masim`, s".into(), time(of_masim)),
         ("steps".into(), steps.len().to_string()),
+        ("steps of `masim`".into(), steps_of_masim.to_string()),
         ("the guard is nearest to zero at step".into(), format!("{k}, g = {:.1e}", nearest.g)),
         ("largest lag of a clock, s".into(), format!("{:.3}", lag(&mut steps.iter()))),
         ("largest lag while 0 < g < 0.02, s".into(), format!("{:.4}", lag(&mut close.iter().copied()))),

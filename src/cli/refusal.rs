@@ -26,7 +26,10 @@ pub(super) fn refuse_aggregates(algorithm: Algorithm, program: &Program) -> Resu
         return Ok(());
     }
     let name = algorithm.name();
-    Err(format!("`{name}` does not take guards with count, sum, min or max over agents; there is `masim`"))
+    Err(format!(
+        "`{name}` does not take guards with count, sum, min or max over agents that come and go while states flow (their \
+         `where` compares what flows): such a guard jumps; there is `masim`"
+    ))
 }
 
 fn not_built(option: &str, instead: &str) -> Refused {

@@ -7,9 +7,10 @@
 
 use crate::runtime::detect::{AtomCurve, CurveRows};
 use crate::runtime::engine::Engine;
+use crate::runtime::fold;
 use crate::runtime::guards::closed;
 use crate::runtime::observe::Misses;
-use crate::runtime::present::{Depth, depth_read};
+use crate::runtime::present::Depth;
 use crate::runtime::solve::roots::{Known, Search, first_flip};
 use crate::runtime::solve::ulp;
 use crate::runtime::watch::Watch;
@@ -49,7 +50,7 @@ impl Audit {
 
     /// Certifies a comparison up to `to`, which the last steps of all its agents cover.
     pub fn follow(&mut self, engine: &mut Engine<'_, '_>, watch: &Watch<'_>, index: usize, to: f64) {
-        let guard = &watch.guards[index];
+        let (guard, folds) = (&watch.guards[index], watch.folds(index));
         let mut shadow = self.shadows[index];
         if guard.at_zero || !engine.guards.instances[guard.instance as usize].active {
             shadow.certified = to;
@@ -68,7 +69,7 @@ impl Audit {
                 reach: 2.0 * ulp(to),
             };
             let mut curve =
-                AtomCurve::new(&engine.agents, guard.atom, watch.slots(index), &[], &mut self.curves);
+                AtomCurve::new(&engine.agents, guard.atom, watch.slots(index), folds, &mut self.curves);
             let from = shadow.certified;
             match first_flip(&mut curve, from, to, known, engine.limits.pieces_max) {
                 Search::None | Search::Undecided => shadow.certified = to,
@@ -103,15 +104,16 @@ impl Audit {
         shadow: &Shadow,
         to: f64,
     ) -> Option<f64> {
-        let guard = &watch.guards[index];
+        let (guard, folds) = (&watch.guards[index], watch.folds(index));
         let as_known = shadow.passed.is_none() && shadow.truth == engine.guards.atoms[index].truth;
-        let reads_states = depth_read(engine.program.kernel(guard.atom.value)) == Depth::States;
+        let kernel = engine.program.kernel(guard.atom.value);
+        let reads_states = fold::depth(engine.program, kernel, folds) == Depth::States;
         if self.has_kinks || !as_known || !reads_states {
             return None;
         }
         let (ranges, operations) = (engine.enclosures.ranges, engine.enclosures.operations);
         std::mem::swap(&mut engine.curves, &mut self.curves);
-        let until = engine.sleep(index, (guard.atom, watch.slots(index), &[]), shadow.certified, to);
+        let until = engine.sleep(index, (guard.atom, watch.slots(index), folds), shadow.certified, to);
         std::mem::swap(&mut engine.curves, &mut self.curves);
         (engine.enclosures.ranges, engine.enclosures.operations) = (ranges, operations);
         until

@@ -5,14 +5,15 @@
 //! clocks of its agents agree within `synchronisation` (15). Nothing is searched for inside a step. Scheduled times
 //! (`after`, `every`) and the end are times at which every step stops.
 //!
-//! Guards with aggregates (`count`, `sum`, ..) are not for these algorithms: their agents change with the states. Whoever
-//! calls them has refused such models ([`takes`]).
+//! Guards with aggregates whose members change while states flow are not for these algorithms: such a g jumps, and the
+//! paper's "itself is smooth". Whoever calls them has refused such models ([`takes`]).
 //!
 //! Known weak points are kept: see `docs/PAPER.md`.
 
 use crate::codegen::program::{Program, Relation};
 use crate::runtime::audit::Audit;
 use crate::runtime::certify::ENDLESS;
+use crate::runtime::definition::{folds_read, guard_of};
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::groups::Group;
@@ -23,14 +24,20 @@ use crate::runtime::solve::step_select::StepSelect;
 use crate::runtime::truth;
 use crate::runtime::watch::{Watch, clock};
 
-/// Whether the published algorithms can run a program: no transition and no claim has an aggregate.
+/// Whether the published algorithms can run a program: the members of every aggregate that a guard or a claim reads change
+/// at events only.
 pub fn takes(program: &Program) -> bool {
     let of_types = program.types.iter().flat_map(|ty| {
-        let claims = ty.modes.iter().flat_map(|mode| &mode.claims).map(|claim| &claim.frame);
-        claims.chain(ty.transitions.iter().map(|transition| &transition.frame))
+        let claims = ty.modes.iter().flat_map(|mode| &mode.claims);
+        let claims = claims.map(|claim| (&claim.frame, Some(&claim.violation)));
+        claims.chain(ty.transitions.iter().map(|transition| (&transition.frame, guard_of(transition))))
     });
     let pairs = program.interactions.iter().flat_map(|interaction| &interaction.transitions);
-    of_types.chain(pairs.map(|pair| &pair.transition.frame)).all(|frame| frame.folds.is_empty())
+    let of_pairs = pairs.map(|pair| (&pair.transition.frame, guard_of(&pair.transition)));
+    of_types.chain(of_pairs).all(|(frame, guard)| {
+        let read = guard.map_or_else(Vec::new, |guard| folds_read(program, frame, guard));
+        read.into_iter().all(|number| frame.folds[number].filter.atoms.is_empty())
+    })
 }
 
 /// How many rounds of the loop pass between two reports of progress.
@@ -183,6 +190,9 @@ impl<'p, 'o> Clocks<'p, 'o> {
             let agent = self.engine.groups.groups[group].members[member];
             for k in 0..self.watch.of_agent[agent].len() {
                 let index = self.watch.of_agent[agent][k] as usize;
+                if !self.watch.guards[index].has(agent) {
+                    continue;
+                }
                 if let Some(audit) = &mut self.audit {
                     audit.follow(&mut self.engine, &self.watch, index, cover);
                 }
@@ -233,7 +243,8 @@ impl<'p, 'o> Clocks<'p, 'o> {
         }
         let (atom, slots) = (guard.atom, self.watch.slots(index));
         let kernel = self.engine.program.kernel(atom.value);
-        let g = truth::evaluate(&self.engine.agents, &mut self.engine.present, kernel, slots, &[]);
+        let folds = self.watch.folds(index);
+        let g = truth::evaluate(&self.engine.agents, &mut self.engine.present, kernel, slots, folds);
         self.watch.evaluations += 1;
         self.watch.operations += kernel.operations();
         if g.abs() <= self.paper.event_tolerance || g.is_nan() {
@@ -260,6 +271,7 @@ impl<'p, 'o> Clocks<'p, 'o> {
     /// leave it first.
     fn after_instant(&mut self, time: f64) {
         self.forget_searches();
+        self.watch.gather(&self.engine);
         self.give_clocks(time);
         for group in 0..self.engine.groups.groups.len() {
             let Group { members, integration, .. } = &self.engine.groups.groups[group];

@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 use crate::codegen::program::{Flow, Program, Slot};
 use crate::runtime::herd::{Advanced, Herd};
 use crate::runtime::solve::control::Accuracy;
-use crate::runtime::solve::leap::{Leaps, STATES_MAX};
+use crate::runtime::solve::leap::{Covering, Leaps, STATES_MAX};
 use crate::runtime::solve::segment::{N_MAX, Segment};
 use crate::runtime::solve::series_step;
 
@@ -93,9 +93,15 @@ impl<'p> Cold<'p> {
     }
 
     /// The step of a cold agent that covers `t`, and its states at the end of that.
-    pub fn follow(&self, agent: usize, t: f64, states: &mut [f64], segment: &mut Segment) {
+    pub fn follow(
+        &self,
+        agent: usize,
+        t: f64,
+        states: &mut [f64],
+        segment: &mut Segment,
+    ) -> Option<Covering> {
         let (herd, place) = self.find(agent);
-        herd.follow(place, t, states, segment);
+        herd.follow(place, t, states, segment)
     }
 
     /// The time and the states from which the way of a cold agent is followed.

@@ -131,7 +131,8 @@ fn may_be_listed(definition: &Definition<'_>) -> bool {
         && definition.comparisons.iter().all(|atom| atom.relation != Relation::Crossing)
 }
 
-fn guard_of(transition: &TransitionSystem) -> Option<&Guard> {
+/// The condition of a transition, if it has one.
+pub fn guard_of(transition: &TransitionSystem) -> Option<&Guard> {
     match &transition.trigger {
         Trigger::When(guard) => Some(guard),
         Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
@@ -199,7 +200,7 @@ fn define<'p>(
 }
 
 /// The aggregates that a guard reads, and those that these read; rising.
-fn folds_read(program: &Program, frame: &Frame, guard: &Guard) -> Vec<usize> {
+pub fn folds_read(program: &Program, frame: &Frame, guard: &Guard) -> Vec<usize> {
     let mut read = vec![false; frame.folds.len()];
     mark(program, frame, guard, &mut read);
     for number in (0..read.len()).rev() {

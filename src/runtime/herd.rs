@@ -6,7 +6,7 @@
 
 use crate::math::lanes::{Level, Work};
 use crate::math::{N_LANES, Numbers, Wide};
-use crate::runtime::solve::leap::{LeapRows, Leaps, STATES_MAX};
+use crate::runtime::solve::leap::{Covering, LeapRows, Leaps, STATES_MAX};
 use crate::runtime::solve::segment::Segment;
 
 /// Agents of one type and mode.
@@ -104,13 +104,14 @@ impl<'p> Herd<'p> {
         (row[2 * self.n + 1], &row[2 * self.n + 2..3 * self.n + 2])
     }
 
-    /// Follows an agent from where its way is known until a step covers `until`: that step, and the states at its end.
-    pub fn follow(&self, place: usize, until: f64, x: &mut [f64], segment: &mut Segment) {
+    /// Follows an agent from where its way is known until a step covers `until`: that step, and the states at its end; none if it is at a step's begin that
+    /// it can go no further.
+    pub fn follow(&self, place: usize, until: f64, x: &mut [f64], segment: &mut Segment) -> Option<Covering> {
         let (start, states) = self.known(place);
         x.copy_from_slice(states);
         let mut rows = LeapRows::new(&self.leaps);
         self.fix(place, &mut rows.fixed);
-        self.leaps.follow((start, until), x, &mut rows, segment);
+        self.leaps.follow((start, until), x, &mut rows, segment)
     }
 
     fn fix(&self, place: usize, fixed: &mut [f64]) {

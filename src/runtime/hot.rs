@@ -3,7 +3,7 @@
 
 use crate::runtime::engine::Engine;
 use crate::runtime::population::ABSENT;
-use crate::runtime::solve::segment::Segment;
+use crate::runtime::solve::leap::Covering;
 
 impl Engine<'_, '_> {
     /// Divides the agents for the window from the present to `until`, and advances the cold ones. Returns how many are hot
@@ -96,9 +96,10 @@ impl Engine<'_, '_> {
         let cold = &mut self.agents.cold;
         let row = &mut self.agents.agents[agent];
         let clock = if cold.knows(agent, time) {
-            let mut segment = Segment::default();
-            cold.follow(agent, time, &mut row.states, &mut segment);
-            row.segment = segment;
+            let covering = cold.follow(agent, time, &mut row.states, &mut row.segment);
+            if let Some(Covering { h, ratio }) = covering {
+                self.groups.groups[row.group].integration.note_accepted(row.segment.start, h, ratio);
+            }
             row.segment.end
         } else {
             let (clock, states) = cold.known(agent);

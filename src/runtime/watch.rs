@@ -3,18 +3,23 @@
 //! A comparison of a compound guard is a g of its own. Its agents are those that it reads and those that its transition
 //! belongs to. It is *watched*, that is approached by step sizes and looked at for g = 0, while it is false; once it has
 //! been found at zero it has to leave it before it is watched again, or it would fire for ever.
+//!
+//! An aggregate (`sum`, `min`, ..) is a function of all its members, and so is a g that reads one. Its members are fixed
+//! between events, and gathered anew after each.
 
 use smallvec::SmallVec;
 
 use crate::codegen::kernel::{AgentView, Kernel};
-use crate::codegen::program::{Atom, Relation};
+use crate::codegen::program::{Atom, FunctionId, Relation};
 use crate::runtime::engine::Engine;
+use crate::runtime::fold::{self, Folded};
 use crate::runtime::groups::Group;
 use crate::runtime::population::{ABSENT, Agent, Slots};
-use crate::runtime::present::{Depth, Views};
+use crate::runtime::present::{Depth, depth_read};
 use crate::runtime::solve::adams;
 use crate::runtime::solve::polynomial::{Cubic, moved};
 use crate::runtime::solve::step_select::StepSelect;
+use crate::runtime::truth::Side;
 
 /// A comparison with its agents.
 pub struct Watched<'p> {
@@ -25,7 +30,19 @@ pub struct Watched<'p> {
     /// Whether it has been found at zero and has not left it since.
     pub at_zero: bool,
     slots: Slots,
+    /// Whose clocks count, rising.
     agents: SmallVec<[usize; 2]>,
+    /// Those that it reads, rising.
+    read: SmallVec<[usize; 2]>,
+    /// Its aggregates, with their members at present.
+    folds: Vec<Folded<'p>>,
+}
+
+impl Watched<'_> {
+    /// Whether an agent's clock counts.
+    pub fn has(&self, agent: usize) -> bool {
+        self.agents.binary_search(&agent).is_ok()
+    }
 }
 
 /// The predictor polynomials of one agent's states, from its clock on.
@@ -40,10 +57,12 @@ struct Predictor {
 pub struct Watch<'p> {
     /// By number of the comparison.
     pub guards: Vec<Watched<'p>>,
-    /// For each agent, the comparisons that it takes part in.
+    /// For each agent, the comparisons that it takes part in, or may, as a member of an aggregate.
     pub of_agent: Vec<Vec<u32>>,
+    /// Those with aggregates.
+    folded: Vec<usize>,
     predictors: Vec<Predictor>,
-    /// Scratch: x, x', x'', x''' of each slot.
+    /// Scratch: x, x', x'', x''' of each agent that a guard reads.
     rows: Vec<f64>,
     absent: Vec<f64>,
     /// Evaluations of guards and of their rates.
@@ -66,27 +85,46 @@ impl<'p> Watch<'p> {
         let agents = &engine.agents;
         let mut of_agent = vec![Vec::new(); agents.len()];
         let mut guards = Vec::with_capacity(engine.guards.atoms.len());
+        let mut folded = Vec::new();
         for (index, state) in engine.guards.atoms.iter().enumerate() {
             let (atom, slots) = engine.guards.atom_slots(agents, index);
-            let mut own: SmallVec<[usize; 2]> = engine.guards.roots(state.instance);
-            own.extend(atom.slots.iter().map(|&slot| slots[slot]).filter(|&agent| agent != ABSENT));
-            own.sort_unstable();
-            own.dedup();
+            let read = sorted(atom.slots.iter().map(|&slot| slots[slot]).filter(|&agent| agent != ABSENT));
+            let own = sorted(engine.guards.roots(state.instance).into_iter().chain(read.iter().copied()));
             for &agent in &own {
                 of_agent[agent].push(index as u32);
             }
-            guards.push(Watched { atom, instance: state.instance, at_zero: false, slots, agents: own });
+            if !atom.folds.is_empty() {
+                folded.push(index);
+                for &ty in &engine.guards.definition(state.instance).quantified {
+                    let may_belong = agents.of_type[ty].iter().filter(|&agent| !own.contains(agent));
+                    may_belong.for_each(|&agent| of_agent[agent].push(index as u32));
+                }
+            }
+            let (instance, folds) = (state.instance, Vec::new());
+            guards.push(Watched { atom, instance, at_zero: false, slots, agents: own, read, folds });
         }
         let width = agents.row_width();
         Self {
             guards,
             of_agent,
+            folded,
             predictors: vec![Predictor::default(); agents.len()],
             rows: Vec::new(),
             absent: vec![f64::NAN; width],
             evaluations: 0,
             polynomials: 0,
             operations: 0,
+        }
+    }
+
+    /// Gathers the members of all aggregates, as they are at the present instant.
+    pub fn gather(&mut self, engine: &Engine<'p, '_>) {
+        for &index in &self.folded {
+            let Watched { atom, instance, slots, agents, read, folds, .. } = &mut self.guards[index];
+            *folds = engine.truths().gather(*instance, engine.program.kernel(atom.value), slots, Side::After);
+            let own = atom.slots.iter().map(|&slot| slots[slot]).filter(|&agent| agent != ABSENT);
+            *read = sorted(own.chain(fold::members(folds)));
+            *agents = sorted(engine.guards.roots(*instance).into_iter().chain(read.iter().copied()));
         }
     }
 
@@ -134,21 +172,19 @@ impl<'p> Watch<'p> {
 
     /// g_k: the guard with every agent at its own clock; the time is the leader's.
     pub fn value(&mut self, engine: &Engine<'_, '_>, index: usize) -> f64 {
-        let t1 = self.leader(engine, index);
-        let kernel = engine.program.kernel(self.guards[index].atom.value);
+        let function = self.guards[index].atom.value;
         let mut out = [0.0];
-        kernel.eval(&self.views(engine, index), t1, &mut out);
-        self.count(kernel);
+        self.evaluate(engine, index, function, &|agent| self.row(engine, agent), &mut out);
+        self.count(engine.program.kernel(function));
         out[0]
     }
 
     /// dg/dx . f with every agent at its own clock, the rate of Gear & Osterby's extra state (9), and its own rate.
     pub fn rates(&mut self, engine: &Engine<'_, '_>, index: usize) -> [f64; 2] {
-        let t1 = self.leader(engine, index);
-        let kernel = engine.program.kernel(self.guards[index].atom.rates);
+        let function = self.guards[index].atom.rates;
         let mut out = [0.0; 3];
-        kernel.eval(&self.views(engine, index), t1, &mut out);
-        self.count(kernel);
+        self.evaluate(engine, index, function, &|agent| self.row(engine, agent), &mut out);
+        self.count(engine.program.kernel(function));
         [out[1], if out[2].is_nan() { 0.0 } else { out[2] }]
     }
 
@@ -157,18 +193,29 @@ impl<'p> Watch<'p> {
         self.operations += kernel.operations();
     }
 
-    /// The rows of a guard's agents, each at its own clock.
-    fn views<'a>(&'a self, engine: &'a Engine<'_, '_>, index: usize) -> Views<'a> {
-        let view = |&agent: &usize| {
-            if agent == ABSENT {
-                let row = self.absent.as_slice();
-                return AgentView { states: row, rates: row, accelerations: row, aux: row };
-            }
-            let Agent { states, aux, .. } = &engine.agents.agents[agent];
-            let Predictor { rates, accelerations, .. } = &self.predictors[agent];
-            AgentView { states, rates, accelerations, aux }
-        };
-        self.guards[index].slots.iter().map(view).collect()
+    /// A function of a guard on some rows, at the time of the leader.
+    fn evaluate<'a>(
+        &'a self,
+        engine: &'a Engine<'_, '_>,
+        index: usize,
+        function: FunctionId,
+        row: &dyn Fn(usize) -> AgentView<'a>,
+        out: &mut [f64],
+    ) {
+        let Watched { slots, folds, .. } = &self.guards[index];
+        let (kernel, t1) = (engine.program.kernel(function), self.leader(engine, index));
+        let leaves = fold::leaves(engine.program, folds, depth_read(kernel), t1, row);
+        kernel.eval(&fold::views(slots, &leaves, &|agent| row(agent)), t1, out);
+    }
+
+    /// The rows of an agent at its own clock.
+    fn row<'a>(&'a self, engine: &'a Engine<'_, '_>, agent: usize) -> AgentView<'a> {
+        if agent == ABSENT {
+            return AgentView::absent(&self.absent);
+        }
+        let Agent { states, aux, .. } = &engine.agents.agents[agent];
+        let Predictor { rates, accelerations, .. } = &self.predictors[agent];
+        AgentView { states, rates, accelerations, aux }
     }
 
     /// The guard with every agent along its predictor polynomial, moved by (17): a polynomial of h^1.
@@ -179,14 +226,9 @@ impl<'p> Watch<'p> {
         let t1 = self.leader(engine, index);
         let guard = &self.guards[index];
         let width = self.absent.len();
-        self.rows.resize(4 * width * guard.slots.len(), 0.0);
-        for &slot in &guard.atom.slots {
-            let agent = guard.slots[slot];
-            if agent == ABSENT {
-                continue;
-            }
+        self.rows.resize(4 * width * guard.read.len(), 0.0);
+        for (rows, &agent) in self.rows.chunks_exact_mut(4 * width).zip(&guard.read) {
             let ahead = select.ahead(clock(engine, agent) - t1);
-            let rows = &mut self.rows[4 * width * slot..4 * width * (slot + 1)];
             for (i, cubic) in self.predictors[agent].cubics.iter().enumerate() {
                 let [x, linear, square, cubic] = moved(cubic, ahead);
                 (rows[i], rows[width + i]) = (x, linear);
@@ -195,12 +237,12 @@ impl<'p> Watch<'p> {
             }
         }
         let kernel = engine.program.kernel(guard.atom.rates);
-        let jet = self.jet(engine, index, t1);
+        let jet = self.jet(engine, index);
         for rows in self.rows.chunks_exact_mut(4 * width) {
             let (known, third) = rows.split_at_mut(3 * width);
             known[2 * width..].iter_mut().zip(third).for_each(|(second, third)| *second += *third);
         }
-        let further = self.jet(engine, index, t1);
+        let further = self.jet(engine, index);
         self.count(kernel);
         self.count(kernel);
         self.count_polynomial();
@@ -209,26 +251,20 @@ impl<'p> Watch<'p> {
     }
 
     /// g, g', g'' on the scratch rows.
-    fn jet(&self, engine: &Engine<'_, '_>, index: usize, t1: f64) -> [f64; 3] {
-        let guard = &self.guards[index];
-        let width = self.absent.len();
-        let views: Views<'_> = (guard.slots.iter().enumerate())
-            .map(|(slot, &agent)| {
-                if agent == ABSENT {
-                    let row = self.absent.as_slice();
-                    return AgentView { states: row, rates: row, accelerations: row, aux: row };
-                }
-                let rows = &self.rows[4 * width * slot..4 * width * (slot + 1)];
-                AgentView {
-                    states: &rows[..width],
-                    rates: &rows[width..2 * width],
-                    accelerations: &rows[2 * width..3 * width],
-                    aux: &engine.agents.agents[agent].aux,
-                }
-            })
-            .collect();
+    fn jet(&self, engine: &Engine<'_, '_>, index: usize) -> [f64; 3] {
+        let (guard, width) = (&self.guards[index], self.absent.len());
+        let row = |agent: usize| {
+            let Ok(k) = guard.read.binary_search(&agent) else { return AgentView::absent(&self.absent) };
+            let rows = &self.rows[4 * width * k..4 * width * (k + 1)];
+            AgentView {
+                states: &rows[..width],
+                rates: &rows[width..2 * width],
+                accelerations: &rows[2 * width..3 * width],
+                aux: &engine.agents.agents[agent].aux,
+            }
+        };
         let mut out = [0.0; 3];
-        engine.program.kernel(guard.atom.rates).eval(&views, t1, &mut out);
+        self.evaluate(engine, index, guard.atom.rates, &row, &mut out);
         out
     }
 
@@ -247,6 +283,18 @@ impl<'p> Watch<'p> {
     pub fn slots(&self, index: usize) -> &Slots {
         &self.guards[index].slots
     }
+
+    /// The aggregates of a guard.
+    pub fn folds(&self, index: usize) -> &[Folded<'p>] {
+        &self.guards[index].folds
+    }
+}
+
+fn sorted(agents: impl Iterator<Item = usize>) -> SmallVec<[usize; 2]> {
+    let mut all: SmallVec<[usize; 2]> = agents.collect();
+    all.sort_unstable();
+    all.dedup();
+    all
 }
 
 /// t^i, s.

@@ -9,6 +9,8 @@ use hyc::base::{Diagnostic, SourceMap};
 use hyc::model::{Files, Settings};
 use hyc::{calculus, model, syntax};
 
+use crate::harness::simulate;
+
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
@@ -54,8 +56,9 @@ fn diagnose(text: &str) -> (SourceMap, Vec<Diagnostic>) {
 
 #[test]
 fn every_sample_of_the_reference_is_sound() {
-    let samples = fenced(&document("docs/LANGUAGE.md"), "hy");
+    let mut samples = fenced(&document("docs/LANGUAGE.md"), "hy");
     assert!(samples.len() >= 7);
+    samples.extend(fenced(&document("docs/PAPER.md"), "hy"));
     let told = samples.iter().map(|sample| {
         let (sources, diagnostics) = diagnose(sample);
         render(&sources, &diagnostics, Colours::None)
@@ -65,8 +68,9 @@ fn every_sample_of_the_reference_is_sound() {
 
 #[test]
 fn what_the_reference_calls_refused_is_refused_as_not_supported_yet() {
-    let samples = fenced(&document("docs/LANGUAGE.md"), "hy refused");
+    let mut samples = fenced(&document("docs/LANGUAGE.md"), "hy refused");
     assert!(samples.len() >= 13);
+    samples.extend(fenced(&document("docs/PAPER.md"), "hy refused"));
     for sample in samples {
         let (sources, diagnostics) = diagnose(&sample);
         let told = render(&sources, &diagnostics, Colours::None);
@@ -77,6 +81,57 @@ fn what_the_reference_calls_refused_is_refused_as_not_supported_yet() {
             "{sample}\n{told}"
         );
     }
+}
+
+#[test]
+fn the_machine_of_the_paper_page_goes_on_with_what_it_did() {
+    let sample = fenced(&document("docs/PAPER.md"), "hy").remove(0);
+    let run = simulate(&sample);
+    let steps: Vec<(f64, &str)> = (run.events.iter().filter(|event| event.agent == "machine"))
+        .map(|event| (event.time, event.to.as_str()))
+        .collect();
+    // the power fails at 6.5, 15, ..., each time for 2 s; a mode that is entered again begins anew
+    let first =
+        [(4.0, "Rest"), (6.5, "Stopped"), (8.5, "Rest"), (11.5, "Turn"), (15.0, "Stopped"), (17.0, "Turn")];
+    assert_eq!(steps[..6], first);
+}
+
+#[test]
+fn every_table_of_the_paper_has_its_place_and_its_experiment() {
+    let page = document("docs/PAPER.md");
+    let folder = root().join("benches/paper");
+    let files = fs::read_dir(folder).unwrap().map(|entry| fs::read_to_string(entry.unwrap().path()).unwrap());
+    let bench: String = files.collect();
+    let places: Vec<&str> =
+        page.split("<!-- table ").skip(1).map(|rest| rest.split(" -->").next().unwrap()).collect();
+    for (k, name) in places.iter().enumerate() {
+        assert!(!places[..k].contains(name), "two places for the table `{name}`");
+        assert!(bench.contains(&format!("\"{name}\"")), "nothing writes the table `{name}`");
+        let begin = format!("<!-- table {name} -->\n");
+        let table = page.split(begin.as_str()).nth(1).unwrap().split("<!-- end -->").next().unwrap();
+        assert!(table.contains("|---") && !table.contains("<!--"), "`{name}` has no table, or no end");
+    }
+    let written = bench.split(".table(\"").skip(1).map(|rest| rest.split('"').next().unwrap());
+    for name in written.chain(["figure_3", "figure_5"]) {
+        assert!(places.contains(&name), "no place for the table `{name}`");
+    }
+    let drawn = bench.split("figure(").filter_map(|rest| rest.trim_start().strip_prefix('"'));
+    for name in drawn.map(|rest| rest.split('"').next().unwrap()) {
+        assert!(page.contains(&format!("](paper/{name}.svg)")), "the figure `{name}` is not shown");
+    }
+}
+
+#[test]
+fn the_experiments_that_the_paper_page_lists_are_those_there_are() {
+    let page = document("docs/PAPER.md");
+    let line = page.lines().find(|line| line.contains("some of them:")).unwrap();
+    let mut listed: Vec<&str> = line.split("some of them:").nth(1).unwrap().split_whitespace().collect();
+    let main = document("benches/paper/main.rs");
+    let mut known: Vec<&str> =
+        main.split("is_wanted(\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
+    listed.sort_unstable();
+    known.sort_unstable();
+    assert_eq!(listed, known);
 }
 
 #[test]

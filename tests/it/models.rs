@@ -13,6 +13,9 @@ mod platoon;
 mod extrapolation;
 mod robertson;
 mod van_der_pol;
+mod double_crossing;
+mod multirate;
+mod interlock;
 
 use crate::harness::{Case, Ended, near};
 

@@ -4,7 +4,7 @@
 use hyc::runtime::Algorithm;
 use hyc::runtime::paper::Paper;
 
-use crate::harness::{Case, Run, near};
+use crate::harness::{Case, Run, all_near, near};
 
 fn masim(gamma: f64) -> Algorithm {
     Algorithm::Masim2004(Paper { gamma, audit: true, ..Paper::default() })
@@ -130,5 +130,32 @@ fn scheduled_times_and_agents_without_states_are_met() {
         for (event, expected) in run.events.iter().zip(&expected.events) {
             near(event.time, expected.time, 1e-5);
         }
+    }
+}
+
+#[test]
+fn a_guard_may_be_one_of_all_members_of_an_aggregate_that_events_change() {
+    let text = "agent Pump(v: real) { state x = 0  discrete runs: bool = true
+            flow { x' = v*(1 + 0.5*sin(3*v*time)) }
+            off:   when x >= 2 { runs := false }
+            full:  when (sum o in Pump where o.runs: o.x) >= 2.4 { }
+            apart: when (max o in Pump: o.x) - (min o in other Pump: o.x) >= 0.5 { } }
+        system { a = Pump(v = 1)  b = Pump(v = 0.6)  c = Pump(v = 0.25) }  run { until 6 }";
+    let expected = Case::new(text).tolerance(1e-10).run();
+    // while all are on, after the first is off, and after the second is
+    assert!(expected.times_of("Pump.full", "a").len() >= 2, "{:?}", expected.log());
+    assert_eq!(expected.times("Pump.off").len(), 2, "{:?}", expected.log());
+    for algorithm in [masim(0.5), masim(0.1), sasim()] {
+        let run = Case::new(text).algorithm(algorithm).tolerance(1e-8).run();
+        assert_eq!(run.events.len(), expected.events.len(), "{algorithm:?}: {:?}", run.log());
+        // Each guard has its own agents, and is seen when their clocks agree: not all at exactly the same time.
+        for transition in ["Pump.off", "Pump.full", "Pump.apart"] {
+            for agent in ["a", "b", "c"] {
+                let times = [&run, &expected].map(|run| run.times_of(transition, agent));
+                all_near(&times[0], &times[1], 1e-4);
+            }
+        }
+        let misses = run.stats.misses.unwrap();
+        assert_eq!((misses.missed, misses.late), (0, 0), "{algorithm:?}");
     }
 }

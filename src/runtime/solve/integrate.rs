@@ -76,6 +76,11 @@ impl Integration {
         self.past.is_empty()
     }
 
+    /// Notes a step that was taken elsewhere.
+    pub fn note_accepted(&mut self, t: f64, h: f64, ratio: f64) {
+        self.note(Attempt { t, h, ratio, accepted: true, refused: 0 });
+    }
+
     /// Notes a try; of those at one time, the last.
     fn note(&mut self, mut attempt: Attempt) {
         attempt.refused = u32::from(!attempt.accepted);

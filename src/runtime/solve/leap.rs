@@ -30,6 +30,8 @@ pub struct LeapRows<T> {
     coefficients: Vec<T>,
     rates: Vec<T>,
     powers: Vec<T>,
+    /// The error of each state in the last step.
+    errors: Vec<T>,
 }
 
 impl<T: Numbers> LeapRows<T> {
@@ -41,6 +43,7 @@ impl<T: Numbers> LeapRows<T> {
             coefficients: vec![zero; leaps.tape.n_coefficients(leaps.order)],
             rates: vec![zero; leaps.tape.n_coefficients(1)],
             powers: vec![zero; leaps.order + 1],
+            errors: vec![zero; leaps.tape.n_states],
         }
     }
 }
@@ -60,7 +63,7 @@ impl Leaps<'_> {
     /// A step from `(t, x)` for the numbers in `rows.fixed`; the states at its end go to `x_new`.
     #[inline(always)]
     pub fn leap<T: Expand>(&self, t: T, x: &[T], rows: &mut LeapRows<T>, x_new: &mut [T]) -> Leap<T> {
-        let LeapRows { fixed, coefficients, rates, powers } = rows;
+        let LeapRows { fixed, coefficients, rates, powers, errors } = rows;
         let (order, n) = (self.order, x.len());
         T::expand(self.tape, t, x, fixed, order, coefficients);
         let stop = self.stop;
@@ -93,6 +96,7 @@ impl Leaps<'_> {
             let last = row[order].zip(powers[order], |c, power| (c * power).abs());
             let before = row[order - 1].zip(powers[order - 1], |c, power| (c * power).abs() * FALLEN);
             let error = defect.zip(last, larger).zip(before, larger);
+            errors[i] = error;
             let size = x[i].zip(x_new[i], |x, x_new| larger(x.abs(), x_new.abs()));
             let allowed = size.map(|size| self.accuracy.absolute + self.accuracy.tolerance * size);
             // NaN is no number that is small enough.
@@ -101,6 +105,15 @@ impl Leaps<'_> {
         }
         Leap { h, end, good }
     }
+}
+
+/// A step that covers a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Covering {
+    /// Its length, s.
+    pub h: f64,
+    /// Its error in units of what is allowed.
+    pub ratio: f64,
 }
 
 /// Numbers in which a series can be expanded; what does it is compiled once.
@@ -143,21 +156,21 @@ fn larger(a: f64, b: f64) -> f64 {
 
 impl Leaps<'_> {
     /// Follows an agent from `(t, x)` until a step covers `until`, s: its dense output in `segment`, and the states at its
-    /// end in `x`. False if a step is refused before: then `x` holds the states at its begin, and `segment` rests there.
+    /// end in `x`. None if a step is refused before: then `x` holds the states at its begin, and `segment` rests there.
     pub fn follow(
         &self,
         (mut t, until): (f64, f64),
         x: &mut [f64],
         rows: &mut LeapRows<f64>,
         segment: &mut Segment,
-    ) -> bool {
+    ) -> Option<Covering> {
         let mut x_new = [0.0; STATES_MAX];
         let x_new = &mut x_new[..x.len()];
         loop {
             let leap = self.leap(t, x, rows, x_new);
             if leap.good == 0.0 {
                 *segment = Segment::at(t, x);
-                return false;
+                return None;
             }
             if leap.end >= until {
                 let n_terms = self.order + 1;
@@ -170,8 +183,9 @@ impl Leaps<'_> {
                         *term = c * power;
                     }
                 }
+                let ratio = self.accuracy.error_norm(&rows.errors, x, x_new);
                 x.copy_from_slice(x_new);
-                return true;
+                return Some(Covering { h: leap.h, ratio });
             }
             x.copy_from_slice(x_new);
             t = leap.end;
