@@ -78,6 +78,8 @@ pub struct Reads {
     pub time: bool,
     /// The auxiliary columns that are read: slot and column, rising.
     pub columns: Vec<(usize, usize)>,
+    /// The states that are read: slot and column, rising.
+    pub states: Vec<(usize, usize)>,
 }
 
 impl Reads {
@@ -89,15 +91,19 @@ impl Reads {
                 Instruction::Time { .. } => reads.time = true,
                 Instruction::Load { slot, row, column, .. } => {
                     reads.include(slot as usize, row, column as usize + 1);
-                    if row == Row::Aux {
-                        reads.columns.push((slot as usize, column as usize));
+                    match row {
+                        Row::Aux => reads.columns.push((slot as usize, column as usize)),
+                        Row::States => reads.states.push((slot as usize, column as usize)),
+                        Row::Rates | Row::Accelerations => {}
                     }
                 }
                 Instruction::Apply { .. } => {}
             }
         }
-        reads.columns.sort_unstable();
-        reads.columns.dedup();
+        for columns in [&mut reads.columns, &mut reads.states] {
+            columns.sort_unstable();
+            columns.dedup();
+        }
         reads
     }
 

@@ -43,7 +43,9 @@ impl<'p> Engine<'p, '_> {
         state.periods = 0;
         for index in self.guards.atom_range(instance) {
             self.guards.atoms[index].slack = 0.0;
-            self.settle(index, rule, &Written::default());
+            if !self.settle_far(index) {
+                self.settle(index, rule, &Written::default());
+            }
         }
         let first = self.guards.instances[instance as usize].rising as usize;
         let n_rising = self.guards.definition(instance).n_rising;
@@ -213,6 +215,7 @@ impl<'p> Engine<'p, '_> {
             return;
         }
         state.certified = time;
+        state.far = false;
         state.flip = f64::INFINITY;
         state.settled = false;
         state.version += 1;
@@ -289,6 +292,9 @@ impl<'p> Engine<'p, '_> {
             }
             let fresh = armed.contains(&instance);
             for index in self.guards.atom_range(instance) {
+                if !fresh && self.stays_far(index, written) {
+                    continue;
+                }
                 let (atom, slots) = self.guards.atom_slots(&self.agents, index);
                 let mut read = atom.slots.iter().map(|&slot| slots[slot]);
                 if !fresh && self.reads_written(index, written) {

@@ -59,6 +59,7 @@ impl Engine<'_, '_> {
     fn certify(&mut self, index: usize, blocked: bool) {
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
         let from = self.guards.atoms[index].certified;
+        self.guards.atoms[index].far = false;
         let kernel = self.program.kernel(atom.value);
         let folds = self.truths().gather(self.guards.atoms[index].instance, kernel, &slots, Side::After);
         let mut to = self.time_end;
@@ -66,13 +67,11 @@ impl Engine<'_, '_> {
         let cold = read.clone().chain(fold::members(&folds)).filter(|&agent| self.agents.cold.is_cold(agent));
         let cold: SmallVec<[usize; 4]> = cold.collect();
         if !cold.is_empty() {
-            return match self.sleep_beyond(index, self.window_end) {
-                Some(until) => self.certified(index, until),
-                None => {
-                    self.recertify(index, from);
-                    cold.into_iter().for_each(|agent| self.thaw(agent));
-                }
-            };
+            if !self.sleep_beyond(index, self.window_end) {
+                self.recertify(index, from);
+                cold.into_iter().for_each(|agent| self.thaw(agent));
+            }
+            return;
         }
         for agent in read.chain(fold::members(&folds)) {
             to = to.min(self.groups.groups[self.agents.agents[agent].group].clock);
@@ -156,6 +155,7 @@ impl Engine<'_, '_> {
             state.settled = false;
         }
         state.certified = until;
+        state.far = false;
         state.version += 1;
         if until < self.time_end {
             self.queues.uncertified.push(Due { time: until, number: index as u32, version: state.version });

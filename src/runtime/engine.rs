@@ -95,6 +95,8 @@ pub struct Engine<'p, 'o> {
     pub reaches: Reaches,
     /// The near pairs; none in the plain form.
     pub neighbours: Neighbours,
+    /// Which form of the engine runs.
+    pub form: Form,
     /// Whether steps go by Taylor series where there is one.
     pub by_series: bool,
     /// The agents that could be cold and are not.
@@ -176,6 +178,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             enclosures: Enclosures::new(&agents, accuracy),
             reaches: Reaches::new(&agents, accuracy, time_end),
             neighbours: Neighbours::default(),
+            form,
             by_series: methods.first() == MethodName::Taylor,
             hot: Vec::new(),
             window_end: f64::INFINITY,

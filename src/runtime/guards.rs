@@ -67,6 +67,8 @@ pub struct AtomState {
     pub slack: f64,
     /// See `Known::settled`.
     pub settled: bool,
+    /// Whether it is certified by rates that are bounded whatever the states of its agents are.
+    pub far: bool,
     /// How far ahead to try to sleep, s; 0: as far as the run goes.
     pub stride: f64,
     /// How often not to try to sleep before the next try.
@@ -103,6 +105,7 @@ impl AtomState {
             leap: None,
             slack: 0.0,
             settled: false,
+            far: false,
             stride: 0.0,
             skip: 0,
             backoff: 0,

@@ -5,6 +5,9 @@ use crate::runtime::engine::Engine;
 use crate::runtime::population::ABSENT;
 use crate::runtime::solve::leap::Covering;
 
+/// How often a comparison that is awake does not try to sleep.
+const SKIP: u16 = 64;
+
 impl Engine<'_, '_> {
     /// Divides the agents for the window from the present to `until`, and advances the cold ones. Returns how many are hot
     /// that would be cold if no guard concerned them.
@@ -43,12 +46,11 @@ impl Engine<'_, '_> {
             if self.guards.atoms[index].version != due.version {
                 continue;
             }
-            match self.sleep_beyond(index, until) {
-                Some(certain) => self.certified(index, certain),
-                None => {
-                    self.add_read(index, &mut needed);
-                    awake.push(due);
-                }
+            if !self.sleep_beyond(index, until) {
+                // Nor will it by the boxes of its agents' groups.
+                self.guards.atoms[index].skip = SKIP;
+                self.add_read(index, &mut needed);
+                awake.push(due);
             }
         }
         self.queues.uncertified.extend(awake);

@@ -182,7 +182,9 @@ impl Engine<'_, '_> {
         let state = &mut self.guards.instances[instance as usize];
         (state.active, state.armed, state.entry) = (true, true, time);
         for index in self.guards.atom_range(instance) {
-            self.settle(index, Rule::Rates, &Written::default());
+            if !self.settle_far(index) {
+                self.settle(index, Rule::Rates, &Written::default());
+            }
         }
     }
 }

@@ -22,6 +22,8 @@ struct Kept {
     first: u32,
     /// From here on they are valid, s.
     since: f64,
+    /// Whether each rate is bounded whatever the states are.
+    pure: bool,
 }
 
 /// Boxes of agents; keeps what bounds their rates.
@@ -51,7 +53,7 @@ impl Reaches {
     pub fn new(agents: &Agents<'_>, accuracy: Accuracy, time_end: f64) -> Self {
         let mut first = 0;
         let kept = agents.agents.iter().map(|agent| {
-            let kept = Kept { version: u32::MAX, first, since: f64::INFINITY };
+            let kept = Kept { version: u32::MAX, first, since: f64::INFINITY, pure: false };
             first += agent.states.len() as u32;
             kept
         });
@@ -92,11 +94,7 @@ impl Reaches {
         let first = self.kept[agent].first as usize;
         let (clock, states) = agents.at_clock(agent, group.clock);
         if group.members.len() == 1 && to <= self.time_end {
-            let known = self.kept[agent];
-            if known.version != group.version || from < known.since {
-                self.bound(agents, agent, clock, &states, from);
-                self.kept[agent] = Kept { version: group.version, first: first as u32, since: from };
-            }
+            self.refresh(agents, group, agent, from);
             let span = Interval { lo: from - clock, hi: to - clock };
             for (&x, &rate) in states.iter().zip(&self.rates[first..first + n]) {
                 out.push(if rate.is_whole() { rate } else { self.padded(x, span.mul(rate)) });
@@ -105,6 +103,7 @@ impl Reaches {
                 return;
             }
         } else {
+            self.kept[agent].pure = false;
             out.resize(n, Interval::WHOLE);
         }
         enclosures.states(agents, groups, agent, (from, to), &mut |state, bound| {
@@ -114,8 +113,42 @@ impl Reaches {
         });
     }
 
-    /// Bounds the rates of an agent that is alone from `since` on, as far as they are bounded whatever its states are.
-    fn bound(&mut self, agents: &Agents<'_>, number: usize, clock: f64, states: &[f64], since: f64) {
+    /// Bounds of the rate of one state of an agent from `from` on, whatever its states are; none if there are none.
+    pub fn rate(
+        &mut self,
+        agents: &Agents<'_>,
+        groups: &[Group],
+        agent: usize,
+        state: usize,
+        from: f64,
+    ) -> Option<Interval> {
+        let group = &groups[agents.agents[agent].group];
+        if group.members.len() != 1 {
+            return None;
+        }
+        self.refresh(agents, group, agent, from);
+        let rate = self.rates[self.kept[agent].first as usize + state];
+        (!rate.is_whole()).then_some(rate)
+    }
+
+    /// Bounds the rates of an agent that is alone, if what is known of them is not valid any more.
+    fn refresh(&mut self, agents: &Agents<'_>, group: &Group, agent: usize, from: f64) {
+        let Kept { version, since, first, .. } = self.kept[agent];
+        if version != group.version || from < since {
+            let (clock, states) = agents.at_clock(agent, group.clock);
+            let pure = self.bound(agents, agent, clock, &states, from);
+            self.kept[agent] = Kept { version: group.version, first, since: from, pure };
+        }
+    }
+
+    /// Whether the box of an agent that was found last rests on rates that are bounded whatever its states are.
+    pub fn is_pure(&self, agent: usize) -> bool {
+        self.kept[agent].pure
+    }
+
+    /// Bounds the rates of an agent that is alone from `since` on, as far as they are bounded whatever its states are. True
+    /// if all are, and by nothing that is known of the states.
+    fn bound(&mut self, agents: &Agents<'_>, number: usize, clock: f64, states: &[f64], since: f64) -> bool {
         let first = self.kept[number].first as usize;
         let agent = &agents.agents[number];
         let n = agent.states.len();
@@ -127,7 +160,7 @@ impl Reaches {
         let mut states_box: SmallVec<[Interval; 8]> = SmallVec::from_elem(ANY, n);
         self.rates[first..first + n].fill(Interval::WHOLE);
         let mut n_bounded = 0;
-        for _ in 0..PASSES {
+        for pass in 0..PASSES {
             let boxes: Boxes<'_> = slots
                 .iter()
                 .map(|&other| {
@@ -147,7 +180,7 @@ impl Reaches {
             }
             let bounded = rates.iter().filter(|rate| !rate.is_whole()).count();
             if bounded == n || bounded == n_bounded {
-                return;
+                return pass == 0 && bounded == n;
             }
             n_bounded = bounded;
             drop(boxes);
@@ -158,6 +191,7 @@ impl Reaches {
                 }
             }
         }
+        false
     }
 
     /// x + way, with room for what the integration may be off by.
