@@ -103,7 +103,7 @@ fn power_of_two(x: f64) -> f64 {
     let rounded = x + ROUNDER;
     let whole = f64::from_bits((rounded.to_bits() << 52).wrapping_add(0x3ff0_0000_0000_0000));
     let rest = x - (rounded - ROUNDER);
-    whole * (((0.0558 * rest + 0.2402) * rest + 0.6931) * rest + 1.0)
+    whole * (((0.0558 * rest + 0.2402) * rest + std::f64::consts::LN_2) * rest + 1.0)
 }
 
 #[cfg(test)]
