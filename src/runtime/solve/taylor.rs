@@ -134,9 +134,11 @@ mod tests {
         let (long, short) = (step(&mut taylor, 0.5), step(&mut taylor, 0.25));
         let power = (error(&long, 0.5) / error(&short, 0.25)).log2();
         assert!((power - (taylor.order as f64 + 1.0)).abs() < 0.1, "{power} at order {}", taylor.order);
-        for (trial, h) in [(&long, 0.5), (&short, 0.25)] {
-            let share = error(trial, h) / trial.error[0];
-            assert!(share < 1.0 && share > 0.01, "{share}");
+        for (trial, h) in [(&long, 0.5_f64), (&short, 0.25)] {
+            let term = |k: usize| (1..=k).fold(1.0, |term, j| term * h / j as f64);
+            let estimate = term(taylor.order).max((-2.0_f64).exp() * term(taylor.order - 1));
+            assert!((trial.error[0] / estimate - 1.0).abs() < 1e-12, "{} is not {estimate}", trial.error[0]);
+            assert!(error(trial, h) < estimate);
         }
     }
 
