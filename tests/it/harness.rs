@@ -236,11 +236,7 @@ impl Case {
     /// The checked model.
     pub fn model(&self, sources: &mut SourceMap) -> Result<Model, Vec<Diagnostic>> {
         let ast = self.ast(sources)?;
-        let mut settings = self.settings.clone();
-        if std::env::var_os("TMP_TAYLOR").is_some() && settings.integrator.is_none() {
-            settings.integrator = Some(Integrator::Taylor);
-        }
-        let checked = hyc::model::check(&ast, sources, &mut Data, &settings);
+        let checked = hyc::model::check(&ast, sources, &mut Data, &self.settings);
         checked.model.ok_or(checked.diagnostics)
     }
 

@@ -8,6 +8,7 @@
 //! Source: Moore, Interval Analysis (1966), chapter 11; Jorba & Zou, Experimental Mathematics 14 (2005).
 
 mod record;
+mod compose;
 mod schedule;
 mod evaluate;
 mod cpu;

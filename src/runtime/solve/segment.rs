@@ -62,9 +62,15 @@ impl Segment {
         self.own_rates_until = self.own_rates_until.map(|until| until.min(t.next_down()));
     }
 
+    /// Where `t` is in the step; not far beyond its ends, where the polynomial says nothing any more: a step can be shorter than
+    /// the resolution of time, to which an event may be put before it or after it.
+    fn theta(&self, t: f64) -> f64 {
+        ((t - self.start) / self.h).clamp(-1.0, 2.0)
+    }
+
     /// The states at `t`; `x` has one place for each.
     pub fn states(&self, t: f64, x: &mut [f64]) {
-        let theta = (t - self.start) / self.h;
+        let theta = self.theta(t);
         for (x, c) in x.iter_mut().zip(self.coefficients.chunks_exact(self.n_coefficients)) {
             *x = c.iter().rev().fold(0.0, |sum, c| sum * theta + c);
         }
@@ -72,7 +78,7 @@ impl Segment {
 
     /// States, their first and their second derivatives at `t`.
     pub fn jet(&self, t: f64, x: &mut [f64], dx: &mut [f64], ddx: &mut [f64]) {
-        let theta = (t - self.start) / self.h;
+        let theta = self.theta(t);
         let n = self.n_coefficients;
         for (i, c) in self.coefficients.chunks_exact(n).enumerate() {
             let (mut p, mut dp, mut ddp) = (0.0, 0.0, 0.0);

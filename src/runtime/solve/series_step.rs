@@ -6,12 +6,13 @@
 //! whether it was good is asked afterwards. One source serves one agent and lanes, with the same bits.
 
 use crate::math::Numbers;
+use crate::math::elementary::log;
 use crate::runtime::solve::control::Accuracy;
 
 /// log2 of the factor by which terms fall from order to order: e^2.
 const FALL: f64 = 2.0 * std::f64::consts::LOG2_E;
 /// By how much terms may fall short of that: e^-2 of the term before the last is taken for an error.
-pub const FALLEN: f64 = 0.135_335_283_236_612_7;
+const FALLEN: f64 = 0.135_335_283_236_612_7;
 /// log2 of the share of the reach that is used.
 const SAFETY: f64 = -0.074;
 
@@ -37,9 +38,42 @@ pub fn reach<T: Numbers>(coefficients: &[T], n: usize, order: usize, accuracy: A
     doublings.zip(defined, |doublings, defined| power_of_two(doublings) + defined)
 }
 
+/// The terms c_k h^k of all states, a row of `order` + 1 for each, and their sums: the states at the end of the step.
+#[inline(always)]
+pub fn sum_up<T: Numbers>(coefficients: &[T], order: usize, h: T, terms: &mut [T], x_new: &mut [T]) {
+    let n_terms = order + 1;
+    for (i, x_new) in x_new.iter_mut().enumerate() {
+        let row = i * n_terms..(i + 1) * n_terms;
+        let mut power = T::all(1.0);
+        for (term, &c) in terms[row.clone()].iter_mut().zip(&coefficients[row.clone()]) {
+            *term = c.zip(power, |c, power| c * power);
+            // Bounded, so that a coefficient that is 0 makes a term that is.
+            power = power.zip(h, |power, h| (power * h).min(f64::MAX));
+        }
+        let sum = |sum: T, term: &T| sum.zip(*term, |sum, term| sum + term);
+        *x_new = terms[row].iter().rev().fold(T::all(0.0), sum);
+    }
+}
+
+/// The estimate of the errors, from the terms of all states and the rates at the end of the step.
+#[inline(always)]
+pub fn errors<T: Numbers>(terms: &[T], order: usize, h: T, rates: &[T], errors: &mut [T]) {
+    let n_terms = order + 1;
+    for ((error, rate), terms) in errors.iter_mut().zip(rates).zip(terms.chunks_exact(n_terms)) {
+        let slope = (1..n_terms)
+            .rev()
+            .fold(T::all(0.0), |sum, k| sum.zip(terms[k], |sum, term| sum + k as f64 * term));
+        let defect = rate.zip(h, |rate, h| h * rate).zip(slope, |change, slope| (change - slope).abs());
+        let last =
+            terms[order].zip(terms[order - 1], |last, before| larger(last.abs(), FALLEN * before.abs()));
+        let share = 1.0 / n_terms as f64;
+        *error = last.zip(defect, |last, defect| larger(last, defect * share));
+    }
+}
+
 /// Order of the series for a tolerance: Jorba & Zou's 1 - ln(tolerance) / 2, and two more.
 pub fn order(tolerance: f64, highest: usize) -> usize {
-    let fitting = (1.0 - 0.5 * crate::math::elementary::log(tolerance)).ceil() + EXTRA;
+    let fitting = (1.0 - 0.5 * log(tolerance)).ceil() + EXTRA;
     (fitting.max(4.0) as usize).min(highest)
 }
 
@@ -69,7 +103,7 @@ fn power_of_two(x: f64) -> f64 {
     let rounded = x + ROUNDER;
     let whole = f64::from_bits((rounded.to_bits() << 52).wrapping_add(0x3ff0_0000_0000_0000));
     let rest = x - (rounded - ROUNDER);
-    whole * (((0.0558 * rest + 0.2402) * rest + 0.6931) * rest + 1.0)
+    whole * (((0.0558 * rest + 0.2402) * rest + std::f64::consts::LN_2) * rest + 1.0)
 }
 
 #[cfg(test)]
