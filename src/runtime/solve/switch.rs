@@ -49,8 +49,10 @@ const FOLLOWS: f64 = 1.0;
 const PATIENCE: u32 = 32;
 /// The same for stiff steps, which are few and have a Jacobian.
 const PATIENCE_STIFF: u32 = 4;
-/// So many looks in a row change the method.
+/// So many looks in a row lead to the stiff method.
 const ENOUGH: u32 = 4;
+/// And so many away from it: what fades within microseconds after each event is no reason.
+const ENOUGH_STIFF: u32 = 32;
 
 impl Switch {
     /// One that begins with this method.
@@ -75,7 +77,11 @@ impl Switch {
             Vote::Stay => 0,
             Vote::Change => self.votes + 1,
         };
-        if self.votes == ENOUGH {
+        let enough = match self.regime {
+            Regime::Explicit => ENOUGH,
+            Regime::Stiff => ENOUGH_STIFF,
+        };
+        if self.votes == enough {
             *self = Self::to(match self.regime {
                 Regime::Explicit => Regime::Stiff,
                 Regime::Stiff => Regime::Explicit,
@@ -118,9 +124,9 @@ mod tests {
     #[test]
     fn and_so_is_one_that_is_not_stiff_any_more() {
         let mut switch = Switch::to(Regime::Stiff);
-        let (regimes, _) = after(&mut switch, [Vote::Change; 10]);
+        let (regimes, _) = after(&mut switch, [Vote::Change; 40]);
         let n = regimes.iter().filter(|regime| **regime == Regime::Stiff).count() as u32;
-        assert_eq!((n, switch.regime), (PATIENCE_STIFF + ENOUGH - 2, Regime::Explicit));
+        assert_eq!((n, switch.regime), (PATIENCE_STIFF + ENOUGH_STIFF - 2, Regime::Explicit));
     }
 
     #[test]
