@@ -23,6 +23,9 @@ impl Limits {
             match name.as_str() {
                 "max_agents" => model.agents_max = size,
                 "max_values" => model.values_max = size,
+                "max_states" => model.states_max = size,
+                "max_modes" => model.modes_max = size,
+                "max_cells" => model.cells_max = size,
                 "max_evaluations" => model.evaluations_max = *value,
                 "max_operations" => model.operations_max = *value,
                 "max_microsteps" => run.microsteps_max = small,
@@ -31,7 +34,7 @@ impl Limits {
                 "max_guards" => run.guards_max = size,
                 "max_pieces" => run.pieces_max = small,
                 _ => {
-                    let of_model = "max_agents, max_values, max_evaluations, max_operations";
+                    let of_model = "max_agents, max_values, max_states, max_modes, max_cells, max_evaluations, max_operations";
                     let of_run = "max_microsteps, zeno_events, max_steps, max_guards, max_pieces";
                     return Err(format!("there is no limit `{name}`; there are {of_model}, {of_run}"));
                 }

@@ -155,7 +155,12 @@ impl<'a> Context<'a> {
             Gives::Whole => Ty::Int,
             Gives::AsArguments => joined,
         };
-        self.apply(op, values.iter().map(|value| value.id).collect(), ty, span)
+        match values[..] {
+            [a] => self.apply(op, [a.id], ty, span),
+            [a, b] => self.apply(op, [a.id, b.id], ty, span),
+            [a, b, c] => self.apply(op, [a.id, b.id, c.id], ty, span),
+            _ => unreachable!("operators have one to three operands"),
+        }
     }
 
     /// `clamp(x, low, high)` is `min(max(x, low), high)`.
@@ -165,8 +170,8 @@ impl<'a> Context<'a> {
             return self.wrong(span);
         }
         let ty = values.iter().fold(Ty::Int, |ty, value| join_numbers(ty, value.ty));
-        let raised = self.apply(Op::Max, vec![values[0].id, values[1].id], ty, span);
-        self.apply(Op::Min, vec![raised.id, values[2].id], ty, span)
+        let raised = self.apply(Op::Max, [values[0].id, values[1].id], ty, span);
+        self.apply(Op::Min, [raised.id, values[2].id], ty, span)
     }
 
     fn lower_user_call(

@@ -6,7 +6,9 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::evaluate::Evaluator;
-use super::ir::{BinderId, Expr, ExprId, ExprKind, FunctionId, InteractionId, ModeId, Model, TypeId, VarRef};
+use super::ir::{
+    BinderId, Expr, ExprId, ExprKind, FunctionId, InteractionId, ModeId, Model, Operands, TypeId, VarRef,
+};
 use super::limits;
 use super::operands::for_each_operand;
 use super::types::{Quantity, Slot, Ty};
@@ -352,8 +354,8 @@ impl<'a> Context<'a> {
     }
 
     /// Adds an operator.
-    pub fn apply(&mut self, op: Op, operands: Vec<ExprId>, ty: Ty, span: Span) -> Value {
-        self.push(ExprKind::Apply(op, operands), ty, span)
+    pub fn apply(&mut self, op: Op, operands: impl Into<Operands>, ty: Ty, span: Span) -> Value {
+        self.push(ExprKind::Apply(op, operands.into()), ty, span)
     }
 
     /// Adds a number.

@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::context::{
     AgentNames, Body, Context, Definition, Global, GlobalKind, Member, PairNames, Progress,
 };
-use super::error::{NameError, TypeError};
+use super::error::{LimitError, NameError, TypeError};
 use super::ir::{AgentType, Interaction, Link, Mode, ModeId, Type, TypeId, Variable};
 use super::types::{Quantity, Slot, Ty};
 use crate::base::{Arena, Span};
@@ -203,12 +203,17 @@ impl<'a> Context<'a> {
     fn declare_variable(&mut self, ty: TypeId, kind: VariableKind, item: &'a ast::Variable) {
         let slot = item.ty.as_ref().map_or(Slot::plain(Ty::Real), |ty| self.slot(ty));
         let span = item.ty.as_ref().map_or(item.name.span, |ty| ty.span);
+        let most = self.model.limits.states_max;
         let (names, model) = (&mut self.agents[ty.index()], &mut self.model.types[ty]);
         let variable = variable(&item.name, item.ty.as_ref(), slot);
         let member = match kind {
             VariableKind::State => {
                 names.states.push(slot);
                 model.states.push(variable);
+                if model.states.len() == most.saturating_add(1) {
+                    let (agent, span) = (model.name.clone(), item.name.span);
+                    self.diagnostics.push(LimitError::States { agent, most, span }.into());
+                }
                 Member::State(model.states.len() - 1)
             }
             VariableKind::Discrete => {

@@ -29,7 +29,7 @@ impl<'a> Context<'a> {
         let span = expr.span;
         match &expr.kind {
             ast::ExprKind::Number { value, text, unit } => {
-                self.lower_literal(*value, text, unit.as_ref(), span)
+                self.lower_literal(*value, text, unit.as_deref(), span)
             }
             ast::ExprKind::Text(_) => self.number(0.0, Ty::Text, span),
             ast::ExprKind::Name(name) => self.lower_name(scope, name, span),
@@ -44,15 +44,15 @@ impl<'a> Context<'a> {
             ast::ExprKind::Unary(UnaryOp::Neg, operand) => self.lower_negation(scope, operand, span),
             ast::ExprKind::Unary(UnaryOp::Not, operand) => {
                 let condition = self.lower_condition(scope, operand);
-                self.apply(Op::Not, vec![condition.id], condition.ty, span)
+                self.apply(Op::Not, [condition.id], condition.ty, span)
             }
             ast::ExprKind::Power(base, exponent) => self.lower_power(scope, base, exponent, span),
-            ast::ExprKind::Sum(chain) => self.lower_sum(scope, chain),
-            ast::ExprKind::Product(chain) => self.lower_product(scope, chain),
+            ast::ExprKind::Sum(chain) => self.lower_sum(scope, chain, span),
+            ast::ExprKind::Product(chain) => self.lower_product(scope, chain, span),
             ast::ExprKind::Compare(op, left, right) => self.lower_comparison(scope, *op, left, right, span),
             ast::ExprKind::Is(agent, target) => self.lower_is(scope, agent, target, span),
-            ast::ExprKind::And(terms) => self.lower_terms(scope, Op::And, terms),
-            ast::ExprKind::Or(terms) => self.lower_terms(scope, Op::Or, terms),
+            ast::ExprKind::And(terms) => self.lower_terms(scope, Op::And, terms, span),
+            ast::ExprKind::Or(terms) => self.lower_terms(scope, Op::Or, terms, span),
             ast::ExprKind::If { condition, then, otherwise } => {
                 self.lower_if(scope, condition, [then, otherwise], Slot::plain(Ty::Wrong), span)
             }
@@ -188,7 +188,7 @@ impl<'a> Context<'a> {
             }
             return value;
         }
-        self.apply(Op::Neg, vec![value.id], value.ty, span)
+        self.apply(Op::Neg, [value.id], value.ty, span)
     }
 
     fn lower_power(
@@ -210,13 +210,13 @@ impl<'a> Context<'a> {
                 let number = self.number(constant, Ty::Int, exponent.span);
                 self.quantities.insert(number.id, Quantity::Of(power.id));
                 let ty = if whole { Ty::Int } else { Ty::Real };
-                return self.apply(Op::Powi, vec![base.id, number.id], ty, span);
+                return self.apply(Op::Powi, [base.id, number.id], ty, span);
             }
         }
-        self.apply(Op::Pow, vec![base.id, power.id], Ty::Real, span)
+        self.apply(Op::Pow, [base.id, power.id], Ty::Real, span)
     }
 
-    fn lower_sum(&mut self, scope: &mut Scope<'a>, chain: &'a ast::Chain<SumOp>) -> Value {
+    fn lower_sum(&mut self, scope: &mut Scope<'a>, chain: &'a ast::Chain<SumOp>, all: Span) -> Value {
         let name = |op| match op {
             SumOp::Add => "+",
             SumOp::Sub => "-",
@@ -229,13 +229,13 @@ impl<'a> Context<'a> {
                 SumOp::Add => Op::Add,
                 SumOp::Sub => Op::Sub,
             };
-            let span = chain.first.span.to(link.operand.span);
-            sum = self.apply(op, vec![sum.id, operand.id], join_numbers(sum.ty, operand.ty), span);
+            let span = Span { end: link.outer.end, ..all };
+            sum = self.apply(op, [sum.id, operand.id], join_numbers(sum.ty, operand.ty), span);
         }
         sum
     }
 
-    fn lower_product(&mut self, scope: &mut Scope<'a>, chain: &'a ast::Chain<ProductOp>) -> Value {
+    fn lower_product(&mut self, scope: &mut Scope<'a>, chain: &'a ast::Chain<ProductOp>, all: Span) -> Value {
         let name = |op| match op {
             ProductOp::Mul => "*",
             ProductOp::Div => "/",
@@ -249,24 +249,25 @@ impl<'a> Context<'a> {
                 ProductOp::Mul => (Op::Mul, joined),
                 ProductOp::Div => (Op::Div, if joined == Ty::Wrong { Ty::Wrong } else { Ty::Real }),
             };
-            let span = chain.first.span.to(link.operand.span);
-            product = self.apply(op, vec![product.id, operand.id], ty, span);
+            let span = Span { end: link.outer.end, ..all };
+            product = self.apply(op, [product.id, operand.id], ty, span);
         }
         product
     }
 
-    fn lower_terms(&mut self, scope: &mut Scope<'a>, op: Op, terms: &'a [ast::Expr]) -> Value {
+    fn lower_terms(&mut self, scope: &mut Scope<'a>, op: Op, terms: &'a [ast::Expr], span: Span) -> Value {
         let values = terms.iter().map(|term| self.lower_condition(scope, term)).collect::<Vec<_>>();
-        self.join_terms(op, terms, values)
+        self.join_terms(op, terms, values, span)
     }
 
-    /// Conditions joined by `and` or `or`, from left to right.
-    pub fn join_terms(&mut self, op: Op, terms: &'a [ast::Expr], values: Vec<Value>) -> Value {
-        let first = terms[0].span;
+    /// Conditions joined by `and` or `or`, from left to right; `span` is the place of all.
+    pub fn join_terms(&mut self, op: Op, terms: &'a [ast::Expr], values: Vec<Value>, span: Span) -> Value {
         let mut all = values[0];
-        for (term, value) in terms.iter().zip(values).skip(1) {
+        let last = values.len() - 1;
+        for (k, (term, value)) in terms.iter().zip(values).enumerate().skip(1) {
             let ty = if all.ty == Ty::Wrong { Ty::Wrong } else { value.ty };
-            all = self.apply(op, vec![all.id, value.id], ty, first.to(term.span));
+            let end = if k == last { span.end } else { term.span.end };
+            all = self.apply(op, [all.id, value.id], ty, Span { end, ..span });
         }
         all
     }
@@ -309,7 +310,7 @@ impl<'a> Context<'a> {
             }
         };
         let ty = if condition.ty == Ty::Wrong { Ty::Wrong } else { ty };
-        self.apply(Op::Select, vec![condition.id, yes.id, no.id], ty, span)
+        self.apply(Op::Select, [condition.id, yes.id, no.id], ty, span)
     }
 
     fn lower_comparison(
@@ -333,10 +334,10 @@ impl<'a> Context<'a> {
             return self.wrong(span);
         }
         let (op, operands) = match op {
-            CompareOp::Less => (Op::Lt, vec![a.id, b.id]),
-            CompareOp::Greater => (Op::Lt, vec![b.id, a.id]),
-            CompareOp::LessEqual => (Op::Le, vec![a.id, b.id]),
-            CompareOp::GreaterEqual | CompareOp::Equal | CompareOp::NotEqual => (Op::Le, vec![b.id, a.id]),
+            CompareOp::Less => (Op::Lt, [a.id, b.id]),
+            CompareOp::Greater => (Op::Lt, [b.id, a.id]),
+            CompareOp::LessEqual => (Op::Le, [a.id, b.id]),
+            CompareOp::GreaterEqual | CompareOp::Equal | CompareOp::NotEqual => (Op::Le, [b.id, a.id]),
         };
         self.apply(op, operands, Ty::Bool, span)
     }
@@ -352,7 +353,7 @@ impl<'a> Context<'a> {
         let (a, b) = (self.lower(scope, left), self.lower(scope, right));
         let same = match (a.ty, b.ty) {
             (Ty::Wrong, _) | (_, Ty::Wrong) => return self.wrong(span),
-            (Ty::Bool, Ty::Bool) => self.apply(Op::Eq, vec![a.id, b.id], Ty::Bool, span),
+            (Ty::Bool, Ty::Bool) => self.apply(Op::Eq, [a.id, b.id], Ty::Bool, span),
             (x, y) if x.is_number() && y.is_number() => {
                 let varies = [a, b].iter().any(|value| {
                     let facts = self.facts[value.id.index()];
@@ -363,7 +364,7 @@ impl<'a> Context<'a> {
                     self.report(TypeError::EqualReals { span, left, right });
                     return self.wrong(span);
                 }
-                self.apply(Op::Eq, vec![a.id, b.id], Ty::Bool, span)
+                self.apply(Op::Eq, [a.id, b.id], Ty::Bool, span)
             }
             (Ty::Nobody, Ty::Nobody) => self.number(1.0, Ty::Bool, span),
             (Ty::Nobody, y) if y.is_reference() => self.absent(b, span),
@@ -380,7 +381,7 @@ impl<'a> Context<'a> {
             }
         };
         match op {
-            CompareOp::NotEqual => self.apply(Op::Not, vec![same.id], Ty::Bool, span),
+            CompareOp::NotEqual => self.apply(Op::Not, [same.id], Ty::Bool, span),
             CompareOp::Equal
             | CompareOp::Less
             | CompareOp::LessEqual
@@ -391,7 +392,7 @@ impl<'a> Context<'a> {
 
     fn absent(&mut self, reference: Value, span: Span) -> Value {
         let present = self.as_condition(reference, span);
-        self.apply(Op::Not, vec![present.id], Ty::Bool, span)
+        self.apply(Op::Not, [present.id], Ty::Bool, span)
     }
 }
 

@@ -225,7 +225,7 @@ impl<'m> Formulas<'m> {
         let mut rest = Vec::new();
         let mut first = id;
         while let ExprKind::Apply(op, operands) = &self.model.exprs[first].kind {
-            let (Some((own, symbol)), [left, right]) = (infix(*op), operands.as_slice()) else { break };
+            let (Some((own, symbol)), [left, right]) = (infix(*op), &operands[..]) else { break };
             if own != level || (first != id && (self.shared[first.index()] || level == Level::Compare)) {
                 break;
             }

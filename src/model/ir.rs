@@ -5,6 +5,7 @@
 
 use crate::base::{Arena, Idx, Span};
 use crate::math::{Op, Scale};
+pub use crate::model::applied::Operands;
 pub use crate::model::integrator::Integrator;
 use crate::model::limits::Limits;
 
@@ -124,9 +125,9 @@ pub enum ExprKind {
     /// A `let` of an agent.
     Let(ExprId, usize),
     /// An operator of arithmetic, comparison of numbers, logic; `Op::Select` is `if`.
-    Apply(Op, Vec<ExprId>),
+    Apply(Op, Operands),
     /// A function of the program.
-    Call(FunctionId, Vec<ExprId>),
+    Call(FunctionId, Box<[ExprId]>),
     /// Whether a link leads to an agent (`if lead`, `not lead`).
     Present(ExprId),
     /// Whether two references name the same agent.

@@ -7,8 +7,14 @@
 pub struct Limits {
     /// `max_agents`: agents at t = 0.
     pub agents_max: usize,
-    /// `max_values`: numbers that all agents hold together (parameters, states, discrete variables, links), and cells of one sample.
+    /// `max_values`: numbers that all agents hold together (parameters, states, discrete variables, links).
     pub values_max: usize,
+    /// `max_states`: states of one agent type.
+    pub states_max: usize,
+    /// `max_modes`: modes of one agent type.
+    pub modes_max: usize,
+    /// `max_cells`: cells of one sample, agents by columns of a `record`.
+    pub cells_max: usize,
     /// `max_evaluations`: operations that all constants together may take.
     pub evaluations_max: u64,
     /// `max_operations`: work on the equations once lets and functions are put in, in nodes looked at.
@@ -20,6 +26,9 @@ impl Default for Limits {
         Self {
             agents_max: 10_000_000,
             values_max: 200_000_000,
+            states_max: 100_000,
+            modes_max: 100_000,
+            cells_max: 10_000_000,
             evaluations_max: 50_000_000,
             operations_max: 200_000_000,
         }

@@ -7,6 +7,7 @@
 
 mod integrator;
 pub mod limits;
+mod applied;
 pub mod ir;
 mod suggest;
 mod dimension;

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use super::context::{Body, Context};
-use super::error::{ModeError, NameError};
+use super::error::{LimitError, ModeError, NameError};
 use super::ir::{Mode, ModeId, TypeId};
 use crate::base::Span;
 use crate::syntax::ast::{self, BodyItem};
@@ -76,6 +76,12 @@ impl<'a> Context<'a> {
             span: item.name.span,
         });
         self.model.types[ty].modes[parent].children.push(id);
+        // The root is no mode.
+        let most = self.model.limits.modes_max;
+        if id.index() == most.saturating_add(1) {
+            let agent = self.model.types[ty].name.clone();
+            self.report(LimitError::Modes { agent, most, span: item.name.span });
+        }
         self.agents[ty.index()].modes.push(Some(item));
         self.agents[ty.index()].mode_lets.push(FxHashMap::default());
         for part in &item.items {

@@ -20,9 +20,8 @@ pub(super) fn for_each_operand(kind: &ExprKind, mut each: impl FnMut(ExprId)) {
         | ExprKind::Let(agent, _)
         | ExprKind::Present(agent)
         | ExprKind::Is(agent, _) => each(*agent),
-        ExprKind::Apply(_, operands) | ExprKind::Call(_, operands) => {
-            operands.iter().for_each(|&id| each(id))
-        }
+        ExprKind::Apply(_, operands) => operands.iter().for_each(|&id| each(id)),
+        ExprKind::Call(_, arguments) => arguments.iter().for_each(|&id| each(id)),
         ExprKind::Same(left, right) => {
             each(*left);
             each(*right);

@@ -113,9 +113,7 @@ impl<'a> Context<'a> {
         let body = body.map(|body| self.lower_condition(scope, body));
         let ty = joined(filter, body, Ty::Int);
         let filter = match (filter, body) {
-            (Some(filter), Some(body)) => {
-                Some(self.apply(Op::And, vec![filter.id, body.id], Ty::Bool, span).id)
-            }
+            (Some(filter), Some(body)) => Some(self.apply(Op::And, [filter.id, body.id], Ty::Bool, span).id),
             (filter, body) => id(filter.or(body)),
         };
         let Range { binder, set, other } = range;

@@ -2,8 +2,10 @@
 //!
 //! Without a variable an item stands for all states and discrete variables.
 
+use rustc_hash::FxHashMap;
+
 use super::context::{Context, Global, GlobalKind, Home, Scope};
-use super::error::{RunError, SystemError};
+use super::error::{LimitError, RunError, SystemError};
 use super::ir::{Record, TypeId, VarRef};
 use super::suggest::closest;
 use super::types::Ty;
@@ -12,17 +14,39 @@ use crate::syntax::ast;
 
 /// What is recorded, item by item.
 pub(super) struct Choice {
-    /// Numbers of agents, in any order.
+    /// For each block, whether all of it is wanted.
+    blocks: Vec<bool>,
+    /// Numbers of single agents, in any order.
     agents: Vec<usize>,
     /// For each type, for each recordable name in declared order, whether it is wanted.
     variables: Vec<Vec<bool>>,
+    /// The blocks by their names.
+    by_name: FxHashMap<String, usize>,
+    /// For each type, the places of its recordable names; none until somebody asks.
+    places: Vec<Option<FxHashMap<String, usize>>>,
 }
 
 impl<'a> Context<'a> {
     /// A choice of nothing.
     pub fn nothing_chosen(&self) -> Choice {
         let variables = self.model.types.iter().map(|ty| vec![false; ty.declared.len()]).collect();
-        Choice { agents: Vec::new(), variables }
+        let names = self.model.population.blocks.iter().enumerate().map(|(k, block)| (block.name.clone(), k));
+        Choice {
+            blocks: vec![false; self.model.population.blocks.len()],
+            agents: Vec::new(),
+            variables,
+            by_name: names.rev().collect(),
+            places: vec![None; self.model.types.len()],
+        }
+    }
+
+    /// The place of a recordable name among those of its type.
+    fn place_of(&self, ty: TypeId, name: &str, choice: &mut Choice) -> Option<usize> {
+        let places = choice.places[ty.index()].get_or_insert_with(|| {
+            let names = self.model.types[ty].declared.iter().enumerate();
+            names.rev().map(|(place, (name, _))| (name.clone(), place)).collect()
+        });
+        places.get(name).copied()
     }
 
     /// Adds an item of `record`.
@@ -40,10 +64,9 @@ impl<'a> Context<'a> {
             _ => self.not_recordable("an expression".to_string(), owner.span),
         };
         let Some(ty) = ty else { return };
-        let declared = &self.model.types[ty].declared;
         match variable {
             None => self.choose_variables(ty, choice),
-            Some(variable) => match declared.iter().position(|(name, _)| *name == variable.text) {
+            Some(variable) => match self.place_of(ty, &variable.text, choice) {
                 Some(place) => choice.variables[ty.index()][place] = true,
                 // A `let` that is wrong is not there, and has been reported.
                 None if self.agents[ty.index()].members.contains_key(variable.text.as_str()) => {}
@@ -58,9 +81,9 @@ impl<'a> Context<'a> {
     }
 
     fn choose_name(&mut self, name: &str, span: Span, choice: &mut Choice) -> Option<TypeId> {
-        if let Some(block) = self.model.population.blocks.iter().find(|block| block.name == name) {
-            choice.agents.extend(block.first..block.first + block.count);
-            return Some(block.ty);
+        if let Some(&block) = choice.by_name.get(name) {
+            choice.blocks[block] = true;
+            return Some(self.model.population.blocks[block].ty);
         }
         match self.globals.get(name) {
             Some(&Global { kind: GlobalKind::Agent(ty), .. }) => {
@@ -87,7 +110,7 @@ impl<'a> Context<'a> {
         index: &'a ast::Expr,
         choice: &mut Choice,
     ) -> Option<TypeId> {
-        let Some(block) = self.model.population.blocks.iter().position(|block| block.name == name) else {
+        let Some(&block) = choice.by_name.get(name) else {
             return match self.globals.get(name) {
                 Some(Global { kind: GlobalKind::Instance, .. }) => None,
                 _ => self.not_recordable(format!("an element of `{name}`"), span),
@@ -111,8 +134,9 @@ impl<'a> Context<'a> {
     }
 
     fn choose_agents(&self, ty: TypeId, choice: &mut Choice) {
-        let blocks = self.model.population.blocks.iter().filter(|block| block.ty == ty);
-        choice.agents.extend(blocks.flat_map(|block| block.first..block.first + block.count));
+        for (wanted, block) in choice.blocks.iter_mut().zip(&self.model.population.blocks) {
+            *wanted |= block.ty == ty;
+        }
     }
 
     fn choose_variables(&self, ty: TypeId, choice: &mut Choice) {
@@ -128,27 +152,49 @@ impl<'a> Context<'a> {
         self.choose_variables(ty, choice);
     }
 
-    /// The record that a choice comes to.
-    pub fn chosen(&self, choice: Choice, every: Option<f64>, file: Option<String>, span: Span) -> Record {
-        let Choice { mut agents, variables: wanted } = choice;
-        agents.sort_unstable();
-        agents.dedup();
+    /// The record that a choice comes to; none, and a diagnostic, if that has too many cells.
+    pub fn chosen(
+        &mut self,
+        choice: Choice,
+        every: Option<f64>,
+        file: Option<String>,
+        span: Span,
+    ) -> Option<Record> {
+        let Choice { blocks, mut agents, variables: wanted, .. } = choice;
         let mut columns: Vec<String> = Vec::new();
+        let mut column_of: FxHashMap<&str, usize> = FxHashMap::default();
         for (ty, wanted) in self.model.types.iter().zip(&wanted) {
             for ((name, _), _) in ty.declared.iter().zip(wanted).filter(|(_, wanted)| **wanted) {
-                if !columns.contains(name) {
+                column_of.entry(name).or_insert_with(|| {
                     columns.push(name.clone());
-                }
+                    columns.len() - 1
+                });
             }
         }
+        agents.sort_unstable();
+        agents.dedup();
+        let population = &self.model.population;
+        let whole = population.blocks.iter().zip(blocks).filter(|(_, wanted)| *wanted);
+        let whole: Vec<_> = whole.map(|(block, _)| block.first..block.first + block.count).collect();
+        let inside = whole.iter().map(ExactSizeIterator::len).sum::<usize>();
+        let most = self.model.limits.cells_max;
+        if inside.saturating_add(agents.len()).saturating_mul(columns.len()) > most {
+            self.report(LimitError::Cells { most, span });
+            return None;
+        }
+        agents.extend(whole.into_iter().flatten());
+        agents.sort_unstable();
+        agents.dedup();
         let of_type = |(ty, wanted): (&super::ir::AgentType, &Vec<bool>)| {
-            let find = |column: &String| {
-                let place = ty.declared.iter().position(|(name, _)| name == column)?;
-                wanted[place].then(|| ty.declared[place].1)
-            };
-            columns.iter().map(find).collect()
+            let mut variables = vec![None; columns.len()];
+            for ((name, variable), wanted) in ty.declared.iter().zip(wanted).rev() {
+                if let Some(&column) = column_of.get(name.as_str()) {
+                    variables[column] = wanted.then_some(*variable);
+                }
+            }
+            variables
         };
         let variables = self.model.types.iter().zip(&wanted).map(of_type).collect();
-        Record { agents, columns, variables, every, file, span }
+        Some(Record { agents, columns, variables, every, file, span })
     }
 }

@@ -89,7 +89,7 @@ pub(super) fn trajectories<'a>(context: &mut Context<'a>, file: &'a ast::Ast, se
     }
     if settings.record_all && context.model.run.records.is_empty() {
         let record = context.record_of_everything();
-        context.model.run.records.push(record);
+        context.model.run.records.extend(record);
     }
 }
 
@@ -252,10 +252,10 @@ impl<'a> Context<'a> {
         let every = period.and_then(|period| self.run_number(&EVERY, period));
         self.file_name(file);
         let record = self.chosen(choice, every, Some(file.value.clone()), span);
-        self.model.run.records.push(record);
+        self.model.run.records.extend(record);
     }
 
-    fn record_of_everything(&self) -> Record {
+    fn record_of_everything(&mut self) -> Option<Record> {
         let mut choice = self.nothing_chosen();
         for ty in self.model.types.indices() {
             self.choose_type(ty, &mut choice);

@@ -203,7 +203,7 @@ impl<'a> Context<'a> {
                 _ => witnesses.push((name, binder)),
             }
         }
-        Guard { condition: self.join_terms(Op::And, terms, values), witnesses }
+        Guard { condition: self.join_terms(Op::And, terms, values, expr.span), witnesses }
     }
 
     /// A condition in which `rising` and `crossing` may stand.
@@ -213,11 +213,11 @@ impl<'a> Context<'a> {
             ast::ExprKind::And(terms) | ast::ExprKind::Or(terms) => {
                 let op = if matches!(expr.kind, ast::ExprKind::And(_)) { Op::And } else { Op::Or };
                 let values = terms.iter().map(|term| self.lower_guard(scope, term)).collect();
-                self.join_terms(op, terms, values)
+                self.join_terms(op, terms, values, span)
             }
             ast::ExprKind::Unary(ast::UnaryOp::Not, operand) => {
                 let value = self.lower_guard(scope, operand);
-                self.apply(Op::Not, vec![value.id], value.ty, span)
+                self.apply(Op::Not, [value.id], value.ty, span)
             }
             ast::ExprKind::Call { callee, args } => match &callee.kind {
                 ast::ExprKind::Name(name) if name == "rising" || name == "crossing" => {

@@ -304,10 +304,10 @@ fn annotation(ty: &Option<TypeName>) -> String {
 }
 
 fn type_name(ty: &TypeName) -> String {
-    format!("{}{}", ty.name.text, unit_after(&ty.unit))
+    format!("{}{}", ty.name.text, unit_after(ty.unit.as_ref()))
 }
 
-fn unit_after(unit: &Option<UnitText>) -> String {
+fn unit_after(unit: Option<&UnitText>) -> String {
     unit.iter().map(|unit| format!(" [{}]", unit.text)).collect()
 }
 

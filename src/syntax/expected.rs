@@ -1,28 +1,28 @@
 //! Turns the place where the grammar gave up into an error that a person can act on.
 //!
-//! In: pest's error (a position and the rules that would have fitted there), the tokens. Out: one [`SyntaxError`]. Common
+//! In: the text with its tokens, pest's error (a position and the rules that would have fitted there). Out: one [`SyntaxError`]. Common
 //! mistakes are recognised one after the other; what is left is "expected ..., found ...".
 
 use pest::error::{Error, ErrorVariant, InputLocation};
 
 use super::error::SyntaxError;
 use super::grammar::{Rule, is_reserved};
-use super::scan::{Token, TokenKind};
+use super::scan::{Source, TokenKind};
 use super::words::{NAMES, OPERATOR, STATEMENTS, in_words, words_that_begin};
-use crate::base::{FileId, Span};
+use crate::base::Span;
 use crate::syntax::MAX_NESTING;
 
 /// The error of a text that is not in the language.
-pub fn explain(file: FileId, text: &str, tokens: &[Token], error: &Error<Rule>) -> SyntaxError {
+pub fn explain(source: Source, error: &Error<Rule>) -> SyntaxError {
     let at = match error.location {
         InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
     };
     let ErrorVariant::ParsingError { positives, .. } = &error.variant else {
         // The only other variant says that the stack is full, which the bound on nesting excludes.
-        return SyntaxError::TooDeep { span: Span::new(file, at, at), limit: MAX_NESTING };
+        return SyntaxError::TooDeep { span: Span::new(source.file, at, at), limit: MAX_NESTING };
     };
-    let found = tokens.partition_point(|token| token.end <= at);
-    let failure = Failure { file, text, tokens, found, fitting: positives };
+    let found = source.tokens.partition_point(|token| token.end() <= at);
+    let failure = Failure { source, found, fitting: positives };
     failure
         .argument_style()
         .or_else(|| failure.wrong_assignment())
@@ -34,9 +34,7 @@ pub fn explain(file: FileId, text: &str, tokens: &[Token], error: &Error<Rule>) 
 
 /// Where the grammar gave up.
 struct Failure<'t> {
-    file: FileId,
-    text: &'t str,
-    tokens: &'t [Token],
+    source: Source<'t>,
     /// The number of the token that did not fit; beyond the last one at the end of the file.
     found: usize,
     /// The rules that would have fitted.
@@ -50,7 +48,7 @@ impl Failure<'_> {
 
     /// The text of a token, empty beyond the ends.
     fn token(&self, k: Option<usize>) -> &str {
-        k.and_then(|k| self.tokens.get(k)).map_or("", |token| &self.text[token.start..token.end])
+        k.map_or("", |k| self.source.word(k))
     }
 
     fn found(&self) -> &str {
@@ -62,11 +60,12 @@ impl Failure<'_> {
     }
 
     fn span_of(&self, k: usize) -> Span {
-        match self.tokens.get(k) {
-            Some(token) => Span::new(self.file, token.start, token.end),
+        let Source { file, tokens, .. } = self.source;
+        match tokens.get(k) {
+            Some(token) => Span::new(file, token.start(), token.end()),
             None => {
-                let end = self.tokens.last().map_or(0, |last| last.end);
-                Span::new(self.file, end, end)
+                let end = tokens.last().map_or(0, |last| last.end());
+                Span::new(file, end, end)
             }
         }
     }
@@ -76,7 +75,7 @@ impl Failure<'_> {
     }
 
     fn is_word(&self, k: usize) -> bool {
-        self.tokens.get(k).is_some_and(|token| token.kind == TokenKind::Word)
+        self.source.tokens.get(k).is_some_and(|token| token.kind == TokenKind::Word)
     }
 
     fn wrong_assignment(&self) -> Option<SyntaxError> {
@@ -106,7 +105,7 @@ impl Failure<'_> {
     /// The tokens before the failure's innermost open bracket: its own number, if there is one.
     fn opener(&self) -> Option<usize> {
         let mut closed = 0_usize;
-        for k in (0..self.found.min(self.tokens.len())).rev() {
+        for k in (0..self.found.min(self.source.tokens.len())).rev() {
             match self.token(Some(k)) {
                 ")" | "]" | "}" => closed += 1,
                 "(" | "[" | "{" if closed == 0 => return Some(k),
@@ -195,9 +194,9 @@ impl Failure<'_> {
 
     /// The first token of the line on which the grammar gave up, if it can be meant as the keyword of a statement.
     fn statement_start(&self) -> Option<usize> {
-        let end = self.tokens.get(self.found)?.start;
-        let line = self.text[..end].rfind(['\n', ';', '{', '}']).map_or(0, |at| at + 1);
-        let first = self.tokens.partition_point(|token| token.start < line);
+        let end = self.source.tokens.get(self.found)?.start();
+        let line = self.source.text[..end].rfind(['\n', ';', '{', '}']).map_or(0, |at| at + 1);
+        let first = self.source.tokens.partition_point(|token| token.start() < line);
         let named = matches!(self.token(Some(first + 1)), "=" | ":=" | ":" | "~" | "'" | "." | "->");
         (first < self.found && !named).then_some(first)
     }
@@ -220,7 +219,7 @@ impl Failure<'_> {
     }
 
     fn unexpected(&self) -> SyntaxError {
-        let found = match self.tokens.get(self.found) {
+        let found = match self.source.tokens.get(self.found) {
             None => "the end of the file".to_string(),
             Some(token) => match token.kind {
                 TokenKind::Word if is_reserved(self.found()) => {

@@ -2,7 +2,7 @@
 //!
 //! In: one file's text. Out: an [`Ast`], or diagnostics (`HY01xx`). Promised: no input makes it panic, overflow a
 //! stack or take more than linear time; a tree that comes out has expressions that nest no deeper than
-//! [`MAX_HEIGHT`] nodes. It does not know what a name, a type, a unit or a number means.
+//! [`MAX_HEIGHT`] nodes. A long text is read in slices, whose tokens are dropped as soon as they have become part of the tree. It does not know what a name, a type, a unit or a number means.
 
 pub mod ast;
 mod error;
@@ -11,6 +11,9 @@ mod nesting;
 mod grammar;
 mod words;
 mod expected;
+mod statements;
+mod slices;
+mod pieces;
 mod build;
 mod dump;
 mod print;
@@ -19,6 +22,9 @@ pub use ast::Ast;
 
 use crate::base::{Diagnostic, FileId, Span};
 use error::SyntaxError;
+use grammar::Rule;
+use pieces::Unread;
+use scan::Source;
 
 /// How deep brackets, `if`s, quantifiers, `^` and prefix operators may nest together in a text.
 pub const MAX_NESTING: usize = 256;
@@ -32,6 +38,9 @@ pub const MAX_FILE_BYTES: usize = 16 << 20;
 
 /// How many errors of one text are told.
 const ERRORS_MAX: usize = 1_000;
+
+/// About how many bytes of a text the grammar reads at once.
+const SLICE_BYTES: usize = 16 << 10;
 
 /// The stack on which this floor recurses: several times what the deepest text needs in a build without optimisation.
 const STACK_BYTES: usize = 64 << 20;
@@ -47,9 +56,14 @@ fn read(file: FileId, text: &str) -> Result<Ast, Vec<SyntaxError>> {
         return Err(vec![SyntaxError::FileTooLarge { span: Span::new(file, 0, 0), limit: MAX_FILE_BYTES }]);
     }
     let tokens = scan::scan(file, text).map_err(|error| vec![error])?;
-    nesting::check_nesting(file, text, &tokens, MAX_NESTING).map_err(|error| vec![error])?;
-    let piece = grammar::read(text).map_err(|error| vec![expected::explain(file, text, &tokens, &error)])?;
-    build::build(file, text, &tokens, piece)
+    let source = Source { file, text, tokens: &tokens };
+    nesting::check_nesting(source, MAX_NESTING).map_err(|error| vec![error])?;
+    build::build(source, SLICE_BYTES).unwrap_or_else(|Unread| {
+        // Read at once, a text is in the language or gives the error to tell.
+        let pieces = grammar::read(Rule::file, text);
+        let pieces = pieces.map_err(|error| vec![expected::explain(source, &error)])?;
+        build::build_read(source, pieces).expect("the grammar and the tree builder agree")
+    })
 }
 
 /// The tree as a text in the canonical layout; parsing it gives the same tree, at other places.
@@ -70,3 +84,6 @@ fn on_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
         handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })
 }
+
+#[cfg(test)]
+mod tests;

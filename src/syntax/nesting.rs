@@ -6,7 +6,7 @@
 //! less, or the end of the expression, takes that operand away from it.
 
 use super::error::{SyntaxError, partner};
-use super::scan::{Token, TokenKind};
+use super::scan::{Source, Token, TokenKind};
 use crate::base::{FileId, Span};
 
 /// An operator whose right operand is being read.
@@ -44,11 +44,11 @@ impl Frame {
 }
 
 /// Checks the brackets and the depth of a text.
-pub fn check_nesting(file: FileId, text: &str, tokens: &[Token], limit: usize) -> Result<(), SyntaxError> {
+pub fn check_nesting(source: Source, limit: usize) -> Result<(), SyntaxError> {
+    let Source { file, text, tokens } = source;
     let mut walk = Walk { file, text, frames: vec![Frame::new(None, false)], depth: 0 };
     for (k, &token) in tokens.iter().enumerate() {
-        let next = tokens.get(k + 1).map_or("", |next| &text[next.start..next.end]);
-        walk.step(token, next)?;
+        walk.step(token, source.word(k + 1))?;
         if walk.depth > limit {
             return Err(SyntaxError::TooDeep { span: walk.span(token), limit });
         }
@@ -72,7 +72,7 @@ struct Walk<'t> {
 
 impl Walk<'_> {
     fn span(&self, token: Token) -> Span {
-        Span::new(self.file, token.start, token.end)
+        Span::new(self.file, token.start(), token.end())
     }
 
     fn top(&mut self) -> &mut Frame {
@@ -127,7 +127,7 @@ impl Walk<'_> {
     }
 
     fn word(&mut self, token: Token, next: &str) -> Result<(), SyntaxError> {
-        match &self.text[token.start..token.end] {
+        match &self.text[token.start()..token.end()] {
             "if" => self.prefix(Pending::Condition),
             "then" => self.turn(Pending::Condition, Pending::Then),
             "else" => self.turn(Pending::Then, Pending::Else),
@@ -142,7 +142,7 @@ impl Walk<'_> {
             "import" | "param" | "fn" | "agent" | "interaction" | "system" | "property" | "run" => {
                 let begins_item = begins_word(next) || next.starts_with(['{', '"']);
                 if let Some(open) = self.top().open.filter(|_| begins_item) {
-                    let before = format!("`{}`", &self.text[token.start..token.end]);
+                    let before = format!("`{}`", &self.text[token.start()..token.end()]);
                     return Err(self.unclosed(open, self.span(token), before));
                 }
                 self.end_expression();
@@ -166,7 +166,7 @@ impl Walk<'_> {
 
     fn symbol(&mut self, token: Token) -> Result<(), SyntaxError> {
         let binary_ends = |pending| pending == Pending::Tight;
-        match &self.text[token.start..token.end] {
+        match &self.text[token.start()..token.end()] {
             "-" if !self.top().after_operand => self.push(Pending::Tight),
             "^" => self.push(Pending::Tight),
             "+" | "-" | "*" | "/" | "<" | "<=" | ">" | ">=" | "==" | "!=" => self.pop_while(binary_ends),
@@ -192,11 +192,11 @@ impl Walk<'_> {
     }
 
     fn close(&mut self, token: Token) -> Result<(), SyntaxError> {
-        let bracket = char::from(self.text.as_bytes()[token.start]);
+        let bracket = char::from(self.text.as_bytes()[token.start()]);
         let Some(open) = self.top().open else {
             return Err(SyntaxError::Unopened { span: self.span(token), bracket });
         };
-        if partner(bracket) != char::from(self.text.as_bytes()[open.start]) {
+        if partner(bracket) != char::from(self.text.as_bytes()[open.start()]) {
             return Err(self.unclosed(open, self.span(token), format!("`{bracket}`")));
         }
         let frame = self.frames.pop().expect("the frame was just looked at");
@@ -206,7 +206,7 @@ impl Walk<'_> {
     }
 
     fn unclosed(&self, open: Token, missed: Span, before: String) -> SyntaxError {
-        let bracket = char::from(self.text.as_bytes()[open.start]);
+        let bracket = char::from(self.text.as_bytes()[open.start()]);
         SyntaxError::Unclosed { open: self.span(open), bracket, missed, before }
     }
 }

@@ -88,7 +88,7 @@ impl Printer {
         }
     }
 
-    fn unit(&mut self, unit: &Option<UnitText>) {
+    fn unit(&mut self, unit: Option<&UnitText>) {
         if let Some(unit) = unit {
             self.put(" [");
             self.put(&unit.text);
@@ -98,7 +98,7 @@ impl Printer {
 
     fn type_name(&mut self, ty: &TypeName) {
         self.put(&ty.name.text);
-        self.unit(&ty.unit);
+        self.unit(ty.unit.as_ref());
     }
 
     fn annotation(&mut self, ty: &Option<TypeName>) {

@@ -26,9 +26,39 @@ pub struct Token {
     /// What it is.
     pub kind: TokenKind,
     /// Its first byte.
-    pub start: usize,
+    start: u32,
     /// One past its last byte.
-    pub end: usize,
+    end: u32,
+}
+
+impl Token {
+    /// Its first byte.
+    pub fn start(self) -> usize {
+        self.start as usize
+    }
+
+    /// One past its last byte.
+    pub fn end(self) -> usize {
+        self.end as usize
+    }
+}
+
+/// A text with its tokens.
+#[derive(Clone, Copy)]
+pub struct Source<'t> {
+    /// Where it stands.
+    pub file: FileId,
+    /// All of it.
+    pub text: &'t str,
+    /// Its tokens, in order.
+    pub tokens: &'t [Token],
+}
+
+impl<'t> Source<'t> {
+    /// The text of a token; empty beyond the last one.
+    pub fn word(&self, token: usize) -> &'t str {
+        self.tokens.get(token).map_or("", |token| &self.text[token.start()..token.end()])
+    }
 }
 
 /// Symbols of two characters; every other symbol has one.
@@ -84,7 +114,8 @@ pub fn scan(file: FileId, text: &str) -> Result<Vec<Token>, SyntaxError> {
         if character == '[' && opens_unit(text, tokens.last()) {
             unit_end = at + rest.find([']', '\n']).unwrap_or(0);
         }
-        tokens.push(Token { kind, start: at, end: at + len });
+        // Files are smaller than 2^32 bytes.
+        tokens.push(Token { kind, start: at as u32, end: (at + len) as u32 });
         at += len;
     }
     Ok(tokens)
@@ -94,7 +125,7 @@ pub fn scan(file: FileId, text: &str) -> Result<Vec<Token>, SyntaxError> {
 fn opens_unit(text: &str, before: Option<&Token>) -> bool {
     before.is_some_and(|token| match token.kind {
         TokenKind::Number => true,
-        TokenKind::Word => text[token.start..token.end] == *"real",
+        TokenKind::Word => text[token.start()..token.end()] == *"real",
         TokenKind::Text | TokenKind::Symbol => false,
     })
 }

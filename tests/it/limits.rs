@@ -80,6 +80,59 @@ fn limits_of_the_model_are_raised_and_lowered() {
 }
 
 #[test]
+fn states_modes_and_cells_have_limits_of_their_own() {
+    let limits = Limits { states_max: 2, modes_max: 2, cells_max: 6, ..Limits::default() };
+    let more_than = |text: &str, code: &str, most: &str, limit: &str| {
+        let raise = format!("--limit {limit}=N");
+        let message = checked(text, limits).0;
+        says(&message, &[code, most, &raise]);
+        assert_eq!(message.matches("error[HY").count(), 1, "{message}");
+    };
+    let states = |n: usize| {
+        let parts = (0..n).map(|k| format!("state x{k} = 0  flow {{ x{k}' = 1 }}  "));
+        format!("agent A {{ {}}}  system {{ a = A() }}", parts.collect::<String>())
+    };
+    assert_eq!(checked(&states(2), limits).0, "");
+    more_than(&states(3), "HY0297", "`A` has more than 2 states", "max_states");
+    more_than(&states(9), "HY0297", "`A` has more than 2 states", "max_states");
+    let modes = |n: usize| {
+        let parts = (1..n).map(|k| format!("mode M{k} {{ }}  "));
+        format!("agent A {{ initial mode M0 {{ }}  {}}}  system {{ a = A() }}", parts.collect::<String>())
+    };
+    assert_eq!(checked(&modes(2), limits).0, "");
+    more_than(&modes(3), "HY0298", "`A` has more than 2 modes", "max_modes");
+    let cells = |n: usize, columns: &str| {
+        format!(
+            "{} system {{ a = A[{n}]()  b = A() }} run {{ until 1 record {columns} to \"a.csv\" }}",
+            "agent A { state x = 0, y = 0  flow { x' = 1  y' = 1 } }"
+        )
+    };
+    for (n, columns) in [(3, "a"), (6, "a.x, a[2].x, a[2].x"), (5, "A.x"), (2, "A"), (100, "a[3], a[4], b")] {
+        assert_eq!(checked(&cells(n, columns), limits).0, "", "{n} {columns}");
+    }
+    for (n, columns) in [(4, "a"), (7, "a.x"), (6, "A.x"), (3, "a, b"), (100, "a[3], a[4], a[5], b.x")] {
+        more_than(&cells(n, columns), "HY0299", "a sample of more than 6 cells", "max_cells");
+    }
+}
+
+#[test]
+fn long_chains_and_many_names_are_looked_at_once() {
+    // Each is what one pass went over again for every part; with so many parts that would not end.
+    let sum: String = (0..100_000).map(|k| format!("+ {k}*x\n")).collect();
+    let names: String = (0..30_000).map(|k| format!("b{k} = A(v = {k})\n")).collect();
+    let columns: Vec<String> = (0..30_000).map(|k| format!("b{k}.x")).collect();
+    let agent = "agent A(v: real) { state x = 0  flow { x' = v }  }";
+    for text in [
+        format!(
+            "agent A {{ state x: real [km] = 0  flow {{ x' = 1 }}  let y = 1\n{sum} when y > 0 {{ x := 0 }} }}"
+        ),
+        format!("{agent} system {{ {names} }} run {{ until 1 record {} to \"a.csv\" }}", columns.join(", ")),
+    ] {
+        assert_eq!(checked(&text, Limits::default()).0, "");
+    }
+}
+
+#[test]
 fn functions_that_double_sixty_times_are_refused() {
     let mut same = "fn f0(x: real) = x\n".to_string();
     let mut moved = same.clone();

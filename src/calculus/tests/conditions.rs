@@ -92,13 +92,13 @@ fn distances_are_compared_by_their_squares() {
     let mut model = random::model();
     let me = random::push(&mut model, ExprKind::SelfAgent, Type::Real);
     let [x, y] = [0, 1].map(|k| random::push(&mut model, ExprKind::State(me, k), Type::Real));
-    let distance = random::push(&mut model, ExprKind::Apply(Op::Hypot, vec![x, y]), Type::Real);
+    let distance = random::push(&mut model, ExprKind::Apply(Op::Hypot, [x, y].into()), Type::Real);
     let (five, param) = (
         random::push(&mut model, ExprKind::Number(5.0), Type::Real),
         random::push(&mut model, ExprKind::AgentParam(me, 0), Type::Real),
     );
-    let near = random::push(&mut model, ExprKind::Apply(Op::Le, vec![distance, five]), Type::Bool);
-    let far = random::push(&mut model, ExprKind::Apply(Op::Lt, vec![param, distance]), Type::Bool);
+    let near = random::push(&mut model, ExprKind::Apply(Op::Le, [distance, five].into()), Type::Bool);
+    let far = random::push(&mut model, ExprKind::Apply(Op::Lt, [param, distance].into()), Type::Bool);
     let mut draft = Draft::new(&model);
     let mut scope = Scope::of_self(TypeId::new(0));
     let near = condition::lower(&mut draft, &mut scope, near, Sense::Positive).expect("a comparison");
@@ -153,8 +153,8 @@ fn conditions_have_limits_and_chains_do_not_count_as_depth() {
     let mut chain = None;
     for k in 0..2 * condition::PARTS_MAX {
         let bound = random::push(&mut model, ExprKind::Number(k as f64), Type::Real);
-        let term = random::push(&mut model, ExprKind::Apply(Op::Le, vec![x, bound]), Type::Bool);
-        let joined = chain.map(|chain| ExprKind::Apply(Op::And, vec![chain, term]));
+        let term = random::push(&mut model, ExprKind::Apply(Op::Le, [x, bound].into()), Type::Bool);
+        let joined = chain.map(|chain| ExprKind::Apply(Op::And, [chain, term].into()));
         chain = Some(joined.map_or(term, |kind| random::push(&mut model, kind, Type::Bool)));
         if k == 5000 {
             let result = lower(&model, chain.expect("just made"));
@@ -167,7 +167,7 @@ fn conditions_have_limits_and_chains_do_not_count_as_depth() {
     for _ in 0..2 * condition::DEPTH_MAX {
         let yes = random::push(&mut model, ExprKind::Number(1.0), Type::Bool);
         let flag = random::push(&mut model, ExprKind::Discrete(me, 1), Type::Bool);
-        deep = random::push(&mut model, ExprKind::Apply(Op::Select, vec![flag, deep, yes]), Type::Bool);
+        deep = random::push(&mut model, ExprKind::Apply(Op::Select, [flag, deep, yes].into()), Type::Bool);
     }
     let result = lower(&model, deep);
     assert!(matches!(result, Err(Error::ConditionTooDeep { .. })));

@@ -81,7 +81,7 @@ pub fn model() -> Model {
         push(&mut model, ExprKind::State(me, 0), Type::Real),
         push(&mut model, ExprKind::State(me, 1), Type::Real),
     );
-    let value = push(&mut model, ExprKind::Apply(Op::Sub, vec![x, y]), Type::Real);
+    let value = push(&mut model, ExprKind::Apply(Op::Sub, [x, y].into()), Type::Real);
     let ty = model.types.indices().next().expect("one type");
     model.types[ty].lets.push(Let {
         name: "l".to_owned(),
@@ -92,7 +92,7 @@ pub fn model() -> Model {
         span: Span::default(),
     });
     let [a, b] = [0, 1].map(|k| push(&mut model, ExprKind::Local(k), Type::Real));
-    let body = push(&mut model, ExprKind::Apply(Op::Mul, vec![a, b]), Type::Real);
+    let body = push(&mut model, ExprKind::Apply(Op::Mul, [a, b].into()), Type::Real);
     let params = vec![("a".to_owned(), Type::Real), ("b".to_owned(), Type::Real)];
     model.functions.push(Function { name: "f".to_owned(), params, body, span: Span::default() });
     model
@@ -128,7 +128,11 @@ pub fn number(model: &mut Model, random: &mut Random, ops: &[Op], depth: usize) 
         if op == Op::Select {
             operands[0] = condition(model, random, ops, depth - 1);
         }
-        ExprKind::Apply(op, operands)
+        match operands[..] {
+            [a] => ExprKind::Apply(op, [a].into()),
+            [a, b] => ExprKind::Apply(op, [a, b].into()),
+            _ => ExprKind::Apply(op, [operands[0], operands[1], operands[2]].into()),
+        }
     };
     push(model, kind, Type::Real)
 }
@@ -139,7 +143,7 @@ pub fn condition(model: &mut Model, random: &mut Random, ops: &[Op], depth: usiz
     let kind = match if depth == 0 { random.below(3) } else { random.below(9) } {
         0 => ExprKind::Number(random.pick(&[0.0, 1.0])),
         1 => ExprKind::Discrete(me, 1),
-        3 => ExprKind::Apply(Op::Not, vec![condition(model, random, ops, depth - 1)]),
+        3 => ExprKind::Apply(Op::Not, [condition(model, random, ops, depth - 1)].into()),
         k @ (4..=6) => {
             let operands = [(); 2].map(|()| condition(model, random, ops, depth - 1));
             ExprKind::Apply([Op::And, Op::Or, Op::Eq][k - 4], operands.into())

@@ -122,7 +122,7 @@ fn long_chains_do_not_overflow_the_stack() {
             crate::model::ir::Type::Real,
         );
         let op = [Op::Add, Op::Mul, Op::Max][k % 3];
-        let kind = crate::model::ir::ExprKind::Apply(op, vec![chain, next]);
+        let kind = crate::model::ir::ExprKind::Apply(op, [chain, next].into());
         chain = random::push(&mut model, kind, crate::model::ir::Type::Real);
     }
     let mut draft = Draft::new(&model);

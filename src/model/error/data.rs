@@ -231,6 +231,12 @@ pub(in crate::model) enum LimitError {
     Agents { count: f64, most: usize, span: Span },
     /// More numbers than the limit.
     Values { what: &'static str, most: usize, span: Span },
+    /// More states of one agent type than the limit.
+    States { agent: String, most: usize, span: Span },
+    /// More modes of one agent type than the limit.
+    Modes { agent: String, most: usize, span: Span },
+    /// More cells of one sample than the limit.
+    Cells { most: usize, span: Span },
     /// Constants that take too long.
     Steps { span: Span },
     /// Definitions that are looked up inside each other, many deep.
@@ -249,6 +255,21 @@ impl From<LimitError> for Diagnostic {
                 Diagnostic::error("HY0296", format!("more than {most} numbers {what}"))
                     .label(span, "too many, with what comes before")
                     .help(raise("max_values"))
+            }
+            LimitError::States { agent, most, span } => {
+                Diagnostic::error("HY0297", format!("`{agent}` has more than {most} states"))
+                    .label(span, "one too many")
+                    .help(raise("max_states"))
+            }
+            LimitError::Modes { agent, most, span } => {
+                Diagnostic::error("HY0298", format!("`{agent}` has more than {most} modes"))
+                    .label(span, "one too many")
+                    .help(raise("max_modes"))
+            }
+            LimitError::Cells { most, span } => {
+                Diagnostic::error("HY0299", format!("a sample of more than {most} cells"))
+                    .label(span, "agents times variables")
+                    .help(raise("max_cells"))
             }
             LimitError::Steps { span } => {
                 Diagnostic::error("HY0292", "the constants of this model take too long to work out")

@@ -14,16 +14,17 @@ use crate::model::units;
 
 /// Looks at every sum, comparison and rate.
 pub(super) fn numbers(context: &Context, found: &mut Vec<Warning>) {
+    let firsts = firsts(context);
     for expr in context.model.exprs.iter() {
         let ExprKind::Apply(op, operands) = &expr.kind else { continue };
-        let (a, b) = match (op, operands.as_slice()) {
+        let (a, b) = match (op, &operands[..]) {
             (Op::Add | Op::Sub | Op::Min | Op::Max | Op::Mod | Op::Hypot | Op::Atan2, &[a, b]) => (a, b),
             (Op::Lt | Op::Le | Op::Eq | Op::Ne, &[a, b]) => (a, b),
             (Op::Select, &[_, a, b]) => (a, b),
             _ => continue,
         };
         for (number, other) in [(a, b), (b, a)] {
-            let Some(place) = declared(context, other) else { continue };
+            let Some(place) = declared(context, firsts[other.index()]) else { continue };
             if context.facts[number.index()].bare {
                 check(context, number, place, "", found);
             }
@@ -55,17 +56,25 @@ fn check(context: &Context, number: ExprId, place: Span, per: &'static str, foun
     found.push(Warning::Beside { number, span: expr.span, unit, in_si, si, place });
 }
 
-/// Where the first name or literal of a sum has its unit.
-fn declared(context: &Context, id: ExprId) -> Option<Span> {
-    let mut at = id;
-    while let ExprKind::Apply(Op::Neg | Op::Abs | Op::Add | Op::Sub | Op::Min | Op::Max, operands) =
-        &context.model.exprs[at].kind
-    {
-        at = operands[0];
+/// For each expression, the first name or literal of the sum that it is; operands stand before their users.
+fn firsts(context: &Context) -> Vec<ExprId> {
+    let mut firsts: Vec<ExprId> = Vec::with_capacity(context.model.exprs.len());
+    for (id, expr) in context.model.exprs.iter_enumerated() {
+        firsts.push(match &expr.kind {
+            ExprKind::Apply(Op::Neg | Op::Abs | Op::Add | Op::Sub | Op::Min | Op::Max, operands) => {
+                firsts[operands[0].index()]
+            }
+            _ => id,
+        });
     }
-    let quantity = match context.quantities.get(&at) {
+    firsts
+}
+
+/// Where a name or a literal has its unit.
+fn declared(context: &Context, id: ExprId) -> Option<Span> {
+    let quantity = match context.quantities.get(&id) {
         Some(&quantity) => quantity,
-        None => context.member_quantity(at),
+        None => context.member_quantity(id),
     };
     match quantity {
         Quantity::Declared { place, .. } => Some(place),

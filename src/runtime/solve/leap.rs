@@ -7,7 +7,7 @@ use crate::codegen::series::SeriesTape;
 use crate::math::{Numbers, Wide};
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::segment::{N_MAX, Segment};
-use crate::runtime::solve::series_step::{FALLEN, reach};
+use crate::runtime::solve::series_step::{errors, reach, sum_up};
 
 /// The series of a flow, with all that a step depends on besides time and states.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +29,9 @@ pub struct LeapRows<T> {
     pub fixed: Vec<T>,
     coefficients: Vec<T>,
     rates: Vec<T>,
-    powers: Vec<T>,
+    /// The terms of each state's series at the end of the step.
+    terms: Vec<T>,
+    ends: Vec<T>,
     /// The error of each state in the last step.
     errors: Vec<T>,
 }
@@ -42,7 +44,8 @@ impl<T: Numbers> LeapRows<T> {
             fixed: vec![zero; leaps.tape.fixed.len()],
             coefficients: vec![zero; leaps.tape.n_coefficients(leaps.order)],
             rates: vec![zero; leaps.tape.n_coefficients(1)],
-            powers: vec![zero; leaps.order + 1],
+            terms: vec![zero; leaps.tape.n_states * (leaps.order + 1)],
+            ends: vec![zero; leaps.tape.n_states],
             errors: vec![zero; leaps.tape.n_states],
         }
     }
@@ -63,44 +66,25 @@ impl Leaps<'_> {
     /// A step from `(t, x)` for the numbers in `rows.fixed`; the states at its end go to `x_new`.
     #[inline(always)]
     pub fn leap<T: Expand>(&self, t: T, x: &[T], rows: &mut LeapRows<T>, x_new: &mut [T]) -> Leap<T> {
-        let LeapRows { fixed, coefficients, rates, powers, errors } = rows;
         let (order, n) = (self.order, x.len());
-        T::expand(self.tape, t, x, fixed, order, coefficients);
+        T::expand(self.tape, t, x, &rows.fixed, order, &mut rows.coefficients);
         let stop = self.stop;
-        let h = reach(coefficients, n, order, self.accuracy);
+        let h = reach(&rows.coefficients, n, order, self.accuracy);
         let h = h.zip(t, |h, t| if h >= (stop - t) * (1.0 - 1e-12) { stop - t } else { h });
         let end = t.zip(h, |t, h| if h == stop - t { stop } else { t + h });
+        sum_up(&rows.coefficients, order, h, &mut rows.terms, x_new);
+        T::expand(self.tape, end, x_new, &rows.fixed, 1, &mut rows.rates);
+        for (end, row) in rows.ends.iter_mut().zip(rows.rates.chunks_exact(2)) {
+            *end = row[1];
+        }
+        errors(&rows.terms, order, h, &rows.ends, &mut rows.errors);
         let mut good = end.zip(t, |end, t| if end > t { 1.0 } else { 0.0 });
-        let mut power = T::all(1.0);
-        for place in powers.iter_mut() {
-            *place = power;
-            power = power.zip(h, |power, h| f64::min(power * h, f64::MAX));
-        }
-        for (row, x_new) in coefficients.chunks_exact(order + 1).zip(x_new.iter_mut()) {
-            let mut sum = T::all(0.0);
-            for (c, power) in row.iter().zip(powers.iter()).rev() {
-                sum = sum.plus_product(c, power);
-            }
-            *x_new = sum;
-        }
-        T::expand(self.tape, end, x_new, fixed, 1, rates);
-        let scale = 1.0 / (order as f64 + 1.0);
-        for (i, row) in coefficients.chunks_exact(order + 1).take(n).enumerate() {
-            let mut slope = T::all(0.0);
-            for k in (1..=order).rev() {
-                let term = row[k].zip(powers[k], |c, power| c * power);
-                slope = slope.zip(term, |slope, term| slope + k as f64 * term);
-            }
-            let ended = rates[2 * i + 1].zip(h, |rate, h| h * rate);
-            let defect = ended.zip(slope, |ended, slope| (ended - slope).abs() * scale);
-            let last = row[order].zip(powers[order], |c, power| (c * power).abs());
-            let before = row[order - 1].zip(powers[order - 1], |c, power| (c * power).abs() * FALLEN);
-            let error = defect.zip(last, larger).zip(before, larger);
-            errors[i] = error;
+        for i in 0..n {
             let size = x[i].zip(x_new[i], |x, x_new| larger(x.abs(), x_new.abs()));
             let allowed = size.map(|size| self.accuracy.absolute + self.accuracy.tolerance * size);
             // NaN is no number that is small enough.
-            let accepted = error.zip(allowed, |error, allowed| if error <= allowed { 1.0 } else { 0.0 });
+            let accepted =
+                rows.errors[i].zip(allowed, |error, allowed| if error <= allowed { 1.0 } else { 0.0 });
             good = good.zip(accepted, |good, accepted| good * accepted);
         }
         Leap { h, end, good }
@@ -176,13 +160,7 @@ impl Leaps<'_> {
                 let n_terms = self.order + 1;
                 debug_assert!(n_terms <= N_MAX);
                 let terms = segment.reset(t, leap.h, leap.end, n_terms, x.len());
-                for (row, terms) in
-                    rows.coefficients.chunks_exact(n_terms).zip(terms.chunks_exact_mut(n_terms))
-                {
-                    for ((term, c), power) in terms.iter_mut().zip(row).zip(&rows.powers) {
-                        *term = c * power;
-                    }
-                }
+                terms.copy_from_slice(&rows.terms);
                 let ratio = self.accuracy.error_norm(&rows.errors, x, x_new);
                 x.copy_from_slice(x_new);
                 return Some(Covering { h: leap.h, ratio });

@@ -22,7 +22,7 @@ pub enum ExprKind {
         /// The literal as written, without the unit.
         text: String,
         /// The unit behind it.
-        unit: Option<UnitText>,
+        unit: Option<Box<UnitText>>,
     },
     /// `"cars.csv"`
     Text(String),
@@ -54,7 +54,7 @@ pub enum ExprKind {
     /// `a <= b`
     Compare(CompareOp, Box<Expr>, Box<Expr>),
     /// `o is Drive.Brake`
-    Is(Box<Expr>, Target),
+    Is(Box<Expr>, Box<Target>),
     /// `p and q and r`: two operands or more
     And(Vec<Expr>),
     /// `p or q or r`: two operands or more
@@ -86,8 +86,8 @@ pub struct Chain<Op> {
 pub struct ChainLink<Op> {
     /// The operator.
     pub op: Op,
-    /// Its place.
-    pub op_span: Span,
+    /// The place of the operand with the parentheses around it.
+    pub outer: Span,
     /// The operand to its right.
     pub operand: Expr,
 }

@@ -2,158 +2,163 @@
 
 use super::Builder;
 use crate::syntax::ast::*;
-use crate::syntax::grammar::{Parts, Piece, Rule};
+use crate::syntax::grammar::Rule;
+use crate::syntax::pieces::{Parts, Piece, Unread};
 
 impl Builder<'_> {
-    pub(super) fn item(&mut self, piece: Piece<'_>) -> Item {
-        match piece.as_rule() {
-            Rule::import => Item::Import(self.import(piece)),
-            Rule::param => Item::Param(self.param(piece)),
-            Rule::definition => Item::Let(self.definition(piece)),
-            Rule::function => Item::Fn(self.function(piece)),
-            Rule::agent => Item::Agent(self.agent(piece)),
-            Rule::interaction => Item::Interaction(self.interaction(piece)),
-            Rule::system => Item::System(self.system(piece)),
-            Rule::property => Item::Property(self.property(piece)),
-            Rule::run => Item::Run(self.run(piece)),
-            rule => unreachable!("{rule:?} is no item of the grammar"),
+    pub(super) fn item(&mut self, piece: Piece<'_>) -> Result<Item, Unread> {
+        match piece.rule() {
+            Rule::import => self.import(piece).map(Item::Import),
+            Rule::param => self.param(piece).map(Item::Param),
+            Rule::definition => self.definition(piece).map(Item::Let),
+            Rule::function => self.function(piece).map(Item::Fn),
+            Rule::agent => self.agent(piece).map(Item::Agent),
+            Rule::interaction => self.interaction(piece).map(Item::Interaction),
+            Rule::system => self.system(piece).map(Item::System),
+            Rule::property => self.property(piece).map(Item::Property),
+            Rule::run => self.run(piece).map(Item::Run),
+            _ => Err(Unread),
         }
     }
 
-    fn import(&mut self, piece: Piece<'_>) -> Import {
+    fn import(&mut self, piece: Piece<'_>) -> Result<Import, Unread> {
         let span = self.span(&piece);
         let mut parts = Parts::of(piece);
-        parts.expect(Rule::kw_import);
-        Import { path: self.text(parts.expect(Rule::string)), span }
+        parts.expect(Rule::kw_import)?;
+        Ok(Import { path: self.text(parts.expect(Rule::string)?), span })
     }
 
-    fn param(&mut self, piece: Piece<'_>) -> Param {
+    fn param(&mut self, piece: Piece<'_>) -> Result<Param, Unread> {
         let span = self.span(&piece);
         let mut parts = Parts::of(piece);
-        parts.expect(Rule::kw_param);
-        let name = self.name(parts.expect(Rule::name));
-        let ty = self.type_annotation(&mut parts);
-        parts.expect(Rule::equals);
-        Param { name, ty, value: self.expr(parts.expect(Rule::expr)), span }
+        parts.expect(Rule::kw_param)?;
+        let name = self.name(parts.expect(Rule::name)?);
+        let ty = self.type_annotation(&mut parts)?;
+        parts.expect(Rule::equals)?;
+        Ok(Param { name, ty, value: self.expr(parts.expect(Rule::expr)?)?, span })
     }
 
-    pub(super) fn definition(&mut self, piece: Piece<'_>) -> Let {
+    pub(super) fn definition(&mut self, piece: Piece<'_>) -> Result<Let, Unread> {
         let span = self.span(&piece);
         let mut parts = Parts::of(piece);
-        parts.expect(Rule::kw_let);
-        let name = self.name(parts.expect(Rule::name));
-        let ty = self.type_annotation(&mut parts);
-        parts.expect(Rule::equals);
-        Let { name, ty, value: self.expr(parts.expect(Rule::expr)), span }
+        parts.expect(Rule::kw_let)?;
+        let name = self.name(parts.expect(Rule::name)?);
+        let ty = self.type_annotation(&mut parts)?;
+        parts.expect(Rule::equals)?;
+        Ok(Let { name, ty, value: self.expr(parts.expect(Rule::expr)?)?, span })
     }
 
-    fn function(&mut self, piece: Piece<'_>) -> Fn {
+    fn function(&mut self, piece: Piece<'_>) -> Result<Fn, Unread> {
         let span = self.span(&piece);
         let mut parts = Parts::of(piece);
-        parts.expect(Rule::kw_fn);
-        let name = self.name(parts.expect(Rule::name));
-        let formals = self.formals(parts.expect(Rule::formals));
-        let ty = self.type_annotation(&mut parts);
-        parts.expect(Rule::equals);
-        Fn { name, formals, ty, body: self.expr(parts.expect(Rule::expr)), span }
+        parts.expect(Rule::kw_fn)?;
+        let name = self.name(parts.expect(Rule::name)?);
+        let formals = self.formals(parts.expect(Rule::formals)?)?;
+        let ty = self.type_annotation(&mut parts)?;
+        parts.expect(Rule::equals)?;
+        Ok(Fn { name, formals, ty, body: self.expr(parts.expect(Rule::expr)?)?, span })
     }
 
-    pub(super) fn formals(&mut self, piece: Piece<'_>) -> Vec<Formal> {
-        Parts::of(piece).all(Rule::formal).map(|formal| self.formal(formal)).collect()
+    pub(super) fn formals(&mut self, piece: Piece<'_>) -> Result<Vec<Formal>, Unread> {
+        self.list(Parts::of(piece).all(Rule::formal), Self::formal)
     }
 
-    fn formal(&mut self, piece: Piece<'_>) -> Formal {
+    fn formal(&mut self, piece: Piece<'_>) -> Result<Formal, Unread> {
         let span = self.span(&piece);
         let mut parts = Parts::of(piece);
-        let name = self.name(parts.expect(Rule::name));
-        parts.expect(Rule::colon);
-        let ty = self.type_name(parts.expect(Rule::type_name));
-        Formal { name, ty, default: self.expr_after(&mut parts, Rule::equals), span }
+        let name = self.name(parts.expect(Rule::name)?);
+        parts.expect(Rule::colon)?;
+        let ty = self.type_name(parts.expect(Rule::type_name)?)?;
+        Ok(Formal { name, ty, default: self.expr_after(&mut parts, Rule::equals)?, span })
     }
 
-    fn interaction(&mut self, piece: Piece<'_>) -> Interaction {
+    fn interaction(&mut self, piece: Piece<'_>) -> Result<Interaction, Unread> {
         let span = self.span(&piece);
         let mut parts = Parts::of(piece);
-        parts.expect(Rule::kw_interaction);
-        let name = self.name(parts.expect(Rule::name));
-        let formals = self.formals(parts.expect(Rule::formals));
+        parts.expect(Rule::kw_interaction)?;
+        let name = self.name(parts.expect(Rule::name)?);
+        let formals = self.formals(parts.expect(Rule::formals)?)?;
         let mut items = Vec::new();
-        for part in parts.rest() {
-            match part.as_rule() {
-                Rule::definition => items.push(InteractionItem::Let(self.definition(part))),
-                Rule::transition => items.push(InteractionItem::Transition(self.transition(part))),
+        for part in parts {
+            let part = part?;
+            match part.rule() {
+                Rule::definition => items.push(InteractionItem::Let(self.definition(part)?)),
+                Rule::transition => items.push(InteractionItem::Transition(self.transition(part)?)),
                 _ => {}
             }
         }
-        Interaction { name, formals, items, span }
+        items.shrink_to_fit();
+        Ok(Interaction { name, formals, items, span })
     }
 
-    fn system(&mut self, piece: Piece<'_>) -> System {
+    fn system(&mut self, piece: Piece<'_>) -> Result<System, Unread> {
         let span = self.span(&piece);
-        let instances =
-            Parts::of(piece).all(Rule::instance).map(|instance| self.instance(instance)).collect();
-        System { instances, span }
+        let instances = self.list(Parts::of(piece).all(Rule::instance), Self::instance)?;
+        Ok(System { instances, span })
     }
 
-    fn instance(&mut self, piece: Piece<'_>) -> Instance {
-        let span = self.span(&piece);
-        let mut parts = Parts::of(piece);
-        let name = self.name(parts.expect(Rule::name));
-        parts.expect(Rule::equals);
-        Instance { name, constructor: self.constructor(parts.expect(Rule::constructor)), span }
-    }
-
-    pub(super) fn constructor(&mut self, piece: Piece<'_>) -> Constructor {
+    fn instance(&mut self, piece: Piece<'_>) -> Result<Instance, Unread> {
         let span = self.span(&piece);
         let mut parts = Parts::of(piece);
-        let agent = self.name(parts.expect(Rule::name));
-        let count = parts.next_if(Rule::count).map(|count| self.count(count));
-        let args = parts.next_if(Rule::named_args).map(|args| self.named_args(args)).unwrap_or_default();
-        let start = parts.skip(Rule::kw_in).then(|| self.plain_target(parts.expect(Rule::target)));
-        let source = self.expr_after(&mut parts, Rule::kw_from);
-        Constructor { agent, count, args, start, source, span }
+        let name = self.name(parts.expect(Rule::name)?);
+        parts.expect(Rule::equals)?;
+        Ok(Instance { name, constructor: self.constructor(parts.expect(Rule::constructor)?)?, span })
     }
 
-    fn count(&mut self, piece: Piece<'_>) -> Count {
+    pub(super) fn constructor(&mut self, piece: Piece<'_>) -> Result<Constructor, Unread> {
         let span = self.span(&piece);
         let mut parts = Parts::of(piece);
-        parts.expect(Rule::open_bracket);
-        match parts.next_if(Rule::expr) {
-            Some(expr) => Count::Exactly(self.expr(expr)),
+        let agent = self.name(parts.expect(Rule::name)?);
+        let count = parts.next_if(Rule::count)?.map(|count| self.count(count)).transpose()?;
+        let args = parts.next_if(Rule::named_args)?.map(|args| self.named_args(args)).transpose()?;
+        let start = match parts.has(Rule::kw_in)? {
+            true => Some(self.plain_target(parts.expect(Rule::target)?)?),
+            false => None,
+        };
+        let source = self.expr_after(&mut parts, Rule::kw_from)?;
+        Ok(Constructor { agent, count, args: args.unwrap_or_default(), start, source, span })
+    }
+
+    fn count(&mut self, piece: Piece<'_>) -> Result<Count, Unread> {
+        let span = self.span(&piece);
+        let mut parts = Parts::of(piece);
+        parts.expect(Rule::open_bracket)?;
+        Ok(match parts.next_if(Rule::expr)? {
+            Some(expr) => Count::Exactly(self.expr(expr)?),
             None => Count::AllRows(span),
-        }
+        })
     }
 
-    fn named_args(&mut self, piece: Piece<'_>) -> Vec<NamedArg> {
-        Parts::of(piece).all(Rule::named_arg).map(|arg| self.named_arg(arg)).collect()
+    fn named_args(&mut self, piece: Piece<'_>) -> Result<Vec<NamedArg>, Unread> {
+        self.list(Parts::of(piece).all(Rule::named_arg), Self::named_arg)
     }
 
-    fn named_arg(&mut self, piece: Piece<'_>) -> NamedArg {
+    fn named_arg(&mut self, piece: Piece<'_>) -> Result<NamedArg, Unread> {
         let span = self.span(&piece);
         let mut parts = Parts::of(piece);
-        let name = self.name(parts.expect(Rule::name));
-        let kind = if parts.next().as_rule() == Rule::tilde { GivenKind::Draw } else { GivenKind::Value };
-        NamedArg { name, given: Given { kind, value: self.expr(parts.expect(Rule::expr)) }, span }
+        let name = self.name(parts.expect(Rule::name)?);
+        let kind = if parts.any()?.rule() == Rule::tilde { GivenKind::Draw } else { GivenKind::Value };
+        Ok(NamedArg { name, given: Given { kind, value: self.expr(parts.expect(Rule::expr)?)? }, span })
     }
 
-    fn property(&mut self, piece: Piece<'_>) -> Property {
+    fn property(&mut self, piece: Piece<'_>) -> Result<Property, Unread> {
         let span = self.span(&piece);
         let mut parts = Parts::of(piece);
-        parts.expect(Rule::kw_property);
-        let name = self.name(parts.expect(Rule::name));
-        parts.expect(Rule::equals);
-        Property { name, formula: self.formula(parts.expect(Rule::formula)), span }
+        parts.expect(Rule::kw_property)?;
+        let name = self.name(parts.expect(Rule::name)?);
+        parts.expect(Rule::equals)?;
+        Ok(Property { name, formula: self.formula(parts.expect(Rule::formula)?)?, span })
     }
 
-    fn formula(&mut self, piece: Piece<'_>) -> Formula {
+    fn formula(&mut self, piece: Piece<'_>) -> Result<Formula, Unread> {
         let span = self.span(&piece);
         let mut parts = Parts::of(piece);
-        let first = parts.next();
-        let kind = match first.as_rule() {
+        let first = parts.any()?;
+        let kind = match first.rule() {
             Rule::kw_always | Rule::kw_eventually => {
-                let always = first.as_rule() == Rule::kw_always;
-                let window = parts.next_if(Rule::window).map(|window| self.window(window));
-                let inner = Box::new(self.formula(parts.expect(Rule::formula)));
+                let always = first.rule() == Rule::kw_always;
+                let window = parts.next_if(Rule::window)?.map(|window| self.window(window)).transpose()?;
+                let inner = Box::new(self.formula(parts.expect(Rule::formula)?)?);
                 if always {
                     FormulaKind::Always(window, inner)
                 } else {
@@ -161,84 +166,90 @@ impl Builder<'_> {
                 }
             }
             _ => {
-                let condition = self.expr(first);
-                if parts.skip(Rule::kw_until) {
-                    let window = parts.next_if(Rule::window).map(|window| self.window(window));
+                let condition = self.expr(first)?;
+                if parts.has(Rule::kw_until)? {
+                    let window =
+                        parts.next_if(Rule::window)?.map(|window| self.window(window)).transpose()?;
                     FormulaKind::Until {
                         before: condition,
                         window,
-                        goal: self.expr(parts.expect(Rule::expr)),
+                        goal: self.expr(parts.expect(Rule::expr)?)?,
                     }
                 } else {
                     FormulaKind::Holds(condition)
                 }
             }
         };
-        Formula { kind, span }
+        Ok(Formula { kind, span })
     }
 
-    fn window(&mut self, piece: Piece<'_>) -> Window {
+    fn window(&mut self, piece: Piece<'_>) -> Result<Window, Unread> {
         let span = self.span(&piece);
         let mut ends = Parts::of(piece).all(Rule::expr);
-        let mut end = || self.expr(ends.next().expect("a window has two ends"));
-        Window { from: end(), to: end(), span }
+        let mut end = || self.expr(ends.next().ok_or(Unread)??);
+        Ok(Window { from: end()?, to: end()?, span })
     }
 
-    fn run(&mut self, piece: Piece<'_>) -> Run {
+    fn run(&mut self, piece: Piece<'_>) -> Result<Run, Unread> {
         let span = self.span(&piece);
         let mut settings = Vec::new();
-        for part in Parts::of(piece).rest() {
+        for part in Parts::of(piece) {
+            let part = part?;
             let span = self.span(&part);
-            if let Some(kind) = self.setting(part) {
+            if let Some(kind) = self.setting(part)? {
                 settings.push(RunSetting { kind, span });
             }
         }
-        Run { settings, span }
+        Ok(Run { settings, span })
     }
 
     /// A line of `run`; none for its keyword and braces.
-    fn setting(&mut self, piece: Piece<'_>) -> Option<RunSettingKind> {
-        let rule = piece.as_rule();
+    fn setting(&mut self, piece: Piece<'_>) -> Result<Option<RunSettingKind>, Unread> {
+        let rule = piece.rule();
         let mut parts = Parts::of(piece);
-        Some(match rule {
+        Ok(Some(match rule {
             Rule::until => {
-                parts.expect(Rule::kw_until);
-                RunSettingKind::Until(self.time(parts.expect(Rule::expr)))
+                parts.expect(Rule::kw_until)?;
+                RunSettingKind::Until(self.time(parts.expect(Rule::expr)?)?)
             }
             Rule::stop_when => {
-                parts.expect(Rule::kw_stop);
-                parts.expect(Rule::kw_when);
-                RunSettingKind::StopWhen(self.expr(parts.expect(Rule::expr)))
+                parts.expect(Rule::kw_stop)?;
+                parts.expect(Rule::kw_when)?;
+                RunSettingKind::StopWhen(self.expr(parts.expect(Rule::expr)?)?)
             }
-            Rule::record => self.record(parts),
+            Rule::record => self.record(parts)?,
             Rule::output => {
-                let name = self.name(parts.expect(Rule::name));
-                parts.expect(Rule::kw_to);
-                RunSettingKind::Output { name, file: self.text(parts.expect(Rule::string)) }
+                let name = self.name(parts.expect(Rule::name)?);
+                parts.expect(Rule::kw_to)?;
+                RunSettingKind::Output { name, file: self.text(parts.expect(Rule::string)?) }
             }
             Rule::set => {
-                let name = self.name(parts.expect(Rule::name));
-                RunSettingKind::Set { name, value: self.time(parts.expect(Rule::expr)) }
+                let name = self.name(parts.expect(Rule::name)?);
+                RunSettingKind::Set { name, value: self.time(parts.expect(Rule::expr)?)? }
             }
-            _ => return None,
-        })
+            _ => return Ok(None),
+        }))
     }
 
-    fn record(&mut self, mut parts: Parts<'_>) -> RunSettingKind {
-        parts.expect(Rule::kw_record);
-        let mut columns = vec![self.expr(parts.expect(Rule::expr))];
-        while parts.skip(Rule::comma) {
-            columns.push(self.expr(parts.expect(Rule::expr)));
+    fn record(&mut self, mut parts: Parts<'_>) -> Result<RunSettingKind, Unread> {
+        parts.expect(Rule::kw_record)?;
+        let mut columns = vec![self.expr(parts.expect(Rule::expr)?)?];
+        while parts.has(Rule::comma)? {
+            columns.push(self.expr(parts.expect(Rule::expr)?)?);
         }
-        let period = parts.skip(Rule::kw_every).then(|| self.time(parts.expect(Rule::expr)));
-        parts.expect(Rule::kw_to);
-        RunSettingKind::Record { columns, period, file: self.text(parts.expect(Rule::string)) }
+        columns.shrink_to_fit();
+        let period = match parts.has(Rule::kw_every)? {
+            true => Some(self.time(parts.expect(Rule::expr)?)?),
+            false => None,
+        };
+        parts.expect(Rule::kw_to)?;
+        Ok(RunSettingKind::Record { columns, period, file: self.text(parts.expect(Rule::string)?) })
     }
 
     /// An expression where a time, a rate or a setting stands.
-    pub(super) fn time(&mut self, piece: Piece<'_>) -> Expr {
-        let expr = self.expr(piece);
+    pub(super) fn time(&mut self, piece: Piece<'_>) -> Result<Expr, Unread> {
+        let expr = self.expr(piece)?;
         self.refuse_unit_index(&expr);
-        expr
+        Ok(expr)
     }
 }

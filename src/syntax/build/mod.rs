@@ -1,46 +1,115 @@
 //! Makes the syntax tree of what the grammar found.
 //!
-//! In: the text, its tokens, the grammar's pieces. Out: the [`Ast`]. Each method is the mirror of one rule of
+//! In: a text with its tokens. Out: the [`Ast`], of the pieces that the grammar finds. Each method is the mirror of one rule of
 //! `grammar/hy.pest`. What a grammar cannot say, or can say only with a poor message, is checked here: units behind
 //! names, calls of numbers, too large literals. Several such errors may come out of one text.
 
+mod fold;
 mod items;
 mod agents;
 mod actions;
 mod expr;
 
+use std::cell::Cell;
+
+use pest::iterators::Pairs;
+
 use super::ast::{Ast, Expr, ExprKind, Name, Target, Text, TypeName, UnitText};
 use super::error::SyntaxError;
-use super::grammar::{Parts, Piece, Rule};
-use super::scan::{Token, UNIT_LETTERS};
-use crate::base::{FileId, Span};
+use super::grammar::Rule;
+use super::pieces::{Parts, Piece, Sliced, Unread};
+use super::scan::{Source, UNIT_LETTERS};
+use crate::base::Span;
 
-/// The syntax tree of a file's piece.
-pub fn build(file: FileId, text: &str, tokens: &[Token], piece: Piece<'_>) -> Result<Ast, Vec<SyntaxError>> {
-    let mut builder = Builder { file, text, tokens, errors: Vec::new() };
-    let ast = builder.file(piece);
-    if builder.errors.is_empty() { Ok(ast) } else { Err(builder.errors) }
+/// A tree, or what is wrong with the text.
+type Outcome = Result<Ast, Vec<SyntaxError>>;
+
+/// The syntax tree of a text that the grammar reads in slices of about so many bytes.
+pub fn build(source: Source, bytes: usize) -> Result<Outcome, Unread> {
+    let text = Sliced { source, bytes };
+    outcome(Piece::whole(&text))
+}
+
+/// The syntax tree of a text that the grammar has read as one.
+pub fn build_read(source: Source, mut pairs: Pairs<Rule>) -> Result<Outcome, Unread> {
+    let text = Sliced { source, bytes: usize::MAX };
+    outcome(Piece::read(&text, pairs.next().ok_or(Unread)?))
+}
+
+fn outcome(piece: Piece) -> Result<Outcome, Unread> {
+    let mut builder = Builder { source: piece.source(), ended: Cell::new(0), errors: Vec::new() };
+    let tree = builder.file(piece)?;
+    Ok(if builder.errors.is_empty() { Ok(tree) } else { Err(builder.errors) })
 }
 
 struct Builder<'t> {
-    file: FileId,
-    text: &'t str,
-    tokens: &'t [Token],
+    source: Source<'t>,
+    /// How many tokens had ended where the last piece did.
+    ended: Cell<usize>,
     errors: Vec<SyntaxError>,
 }
 
 impl Builder<'_> {
     /// The place of a piece, without the white space and comments that the grammar puts at its end.
     fn span(&self, piece: &Piece<'_>) -> Span {
-        let span = piece.as_span();
-        let ended = self.tokens.partition_point(|token| token.end <= span.end());
-        let end = ended.checked_sub(1).map_or(span.end(), |last| self.tokens[last].end);
-        Span::new(self.file, span.start(), end.max(span.start()))
+        let bytes = piece.range();
+        let end = match self.ended(bytes.end) {
+            0 => bytes.end,
+            ended => self.source.tokens[ended - 1].end(),
+        };
+        Span::new(self.source.file, bytes.start, end.max(bytes.start))
     }
 
-    fn file(&mut self, piece: Piece<'_>) -> Ast {
-        let parts = Parts::of(piece).rest();
-        Ast { items: parts.filter(|part| part.as_rule() != Rule::EOI).map(|part| self.item(part)).collect() }
+    /// How many tokens end at this byte or before it. Pieces come nearly in the order of the text, so the search begins
+    /// where the last one ended.
+    fn ended(&self, at: usize) -> usize {
+        let tokens = self.source.tokens;
+        let (mut least, mut most) = (self.ended.get(), self.ended.get());
+        let mut step = 1;
+        while least > 0 && tokens[least - 1].end() > at {
+            most = least - 1;
+            least = least.saturating_sub(step);
+            step *= 2;
+        }
+        while most < tokens.len() && tokens[most].end() <= at {
+            least = most + 1;
+            most = (most + step).min(tokens.len());
+            step *= 2;
+        }
+        let ended = least + tokens[least..most].partition_point(|token| token.end() <= at);
+        self.ended.set(ended);
+        ended
+    }
+
+    /// All of these pieces, each made into something.
+    fn list<'t, T>(
+        &mut self,
+        pieces: impl Iterator<Item = Result<Piece<'t>, Unread>>,
+        mut make: impl FnMut(&mut Self, Piece<'t>) -> Result<T, Unread>,
+    ) -> Result<Vec<T>, Unread> {
+        self.some_of(pieces, |this, piece| make(this, piece).map(Some))
+    }
+
+    /// Those of these pieces that become something.
+    fn some_of<'t, T>(
+        &mut self,
+        pieces: impl Iterator<Item = Result<Piece<'t>, Unread>>,
+        mut make: impl FnMut(&mut Self, Piece<'t>) -> Result<Option<T>, Unread>,
+    ) -> Result<Vec<T>, Unread> {
+        let mut made = Vec::new();
+        for piece in pieces {
+            made.extend(make(self, piece?)?);
+        }
+        made.shrink_to_fit();
+        Ok(made)
+    }
+
+    fn file(&mut self, piece: Piece<'_>) -> Result<Ast, Unread> {
+        let items = self.some_of(Parts::of(piece), |this, part| match part.rule() {
+            Rule::EOI => Ok(None),
+            _ => this.item(part).map(Some),
+        })?;
+        Ok(Ast { items })
     }
 
     fn name(&self, piece: Piece<'_>) -> Name {
@@ -64,28 +133,31 @@ impl Builder<'_> {
         UnitText { text, span }
     }
 
-    fn type_name(&mut self, piece: Piece<'_>) -> TypeName {
+    fn type_name(&mut self, piece: Piece<'_>) -> Result<TypeName, Unread> {
         let span = self.span(&piece);
         let mut parts = Parts::of(piece);
-        let name = self.name(parts.expect(Rule::name));
-        let unit = parts.next_if(Rule::unit).map(|unit| self.unit(unit));
-        TypeName { name, unit, span }
+        let name = self.name(parts.expect(Rule::name)?);
+        let unit = parts.next_if(Rule::unit)?.map(|unit| self.unit(unit));
+        Ok(TypeName { name, unit, span })
     }
 
     /// `(colon ~ type_name)?`
-    fn type_annotation(&mut self, parts: &mut Parts<'_>) -> Option<TypeName> {
-        parts.skip(Rule::colon).then(|| self.type_name(parts.expect(Rule::type_name)))
+    fn type_annotation(&mut self, parts: &mut Parts<'_>) -> Result<Option<TypeName>, Unread> {
+        if !parts.has(Rule::colon)? {
+            return Ok(None);
+        }
+        self.type_name(parts.expect(Rule::type_name)?).map(Some)
     }
 
     /// `(word ~ expr)?`
-    fn expr_after(&mut self, parts: &mut Parts<'_>, word: Rule) -> Option<Expr> {
-        parts.skip(word).then(|| self.expr(parts.expect(Rule::expr)))
+    fn expr_after(&mut self, parts: &mut Parts<'_>, word: Rule) -> Result<Option<Expr>, Unread> {
+        if parts.has(word)? { self.expr(parts.expect(Rule::expr)?).map(Some) } else { Ok(None) }
     }
 
     /// A path of modes that is entered: `history` may stand at its end.
-    fn target(&mut self, piece: Piece<'_>) -> Target {
+    fn target(&mut self, piece: Piece<'_>) -> Result<Target, Unread> {
         let span = self.span(&piece);
-        let mut path: Vec<Name> = Parts::of(piece).all(Rule::name).map(|name| self.name(name)).collect();
+        let mut path = self.list(Parts::of(piece).all(Rule::name), |this, name| Ok(this.name(name)))?;
         let history = match path.last() {
             Some(last) if path.len() > 1 && last.text == "history" => path.pop().map(|name| name.span),
             _ => None,
@@ -93,16 +165,16 @@ impl Builder<'_> {
         for name in path.iter().filter(|name| name.text == "history") {
             self.errors.push(SyntaxError::MisplacedHistory { span: name.span });
         }
-        Target { path, history, span }
+        Ok(Target { path, history, span })
     }
 
     /// A path of modes that is not entered by a transition: `history` has no meaning in it.
-    fn plain_target(&mut self, piece: Piece<'_>) -> Target {
-        let target = self.target(piece);
+    fn plain_target(&mut self, piece: Piece<'_>) -> Result<Target, Unread> {
+        let target = self.target(piece)?;
         if let Some(span) = target.history {
             self.errors.push(SyntaxError::MisplacedHistory { span });
         }
-        target
+        Ok(target)
     }
 
     /// Refuses `T [s]` where a time or a rate stands: there `s` is a unit, not an index.
@@ -125,12 +197,13 @@ impl Builder<'_> {
 
     /// Reports the brackets around `index` as a unit behind `base`.
     fn misplaced_unit(&mut self, base: Span, index: Span) {
-        let unit = self.text.get(index.range()).unwrap_or_default().to_string();
-        let brackets = self.text[..index.start as usize].rfind('[').unwrap_or(index.start as usize);
-        let end =
-            self.text[index.range().end..].find(']').map_or(index.range().end, |k| index.range().end + k + 1);
+        let unit = self.source.text.get(index.range()).unwrap_or_default().to_string();
+        let brackets = self.source.text[..index.start as usize].rfind('[').unwrap_or(index.start as usize);
+        let end = self.source.text[index.range().end..]
+            .find(']')
+            .map_or(index.range().end, |k| index.range().end + k + 1);
         self.errors.push(SyntaxError::MisplacedUnit {
-            span: Span::new(self.file, brackets, end),
+            span: Span::new(self.source.file, brackets, end),
             unit,
             base,
         });

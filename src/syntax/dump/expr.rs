@@ -11,7 +11,7 @@ pub struct Flat<'e>(pub &'e Expr);
 impl fmt::Display for Flat<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.0.kind {
-            ExprKind::Number { text, unit, value: _ } => write!(f, "{text}{}", unit_after(unit)),
+            ExprKind::Number { text, unit, value: _ } => write!(f, "{text}{}", unit_after(unit.as_deref())),
             ExprKind::Text(text) => write!(f, "{text:?}"),
             ExprKind::Name(name) => f.write_str(name),
             ExprKind::List(items) => joined(f, "[", items, ", ", "]"),

@@ -61,7 +61,7 @@ impl Printer {
         match &expr.kind {
             ExprKind::Number { text, unit, value: _ } => {
                 self.put(text);
-                self.unit(unit);
+                self.unit(unit.as_deref());
             }
             ExprKind::Text(text) => self.quoted(text),
             ExprKind::Name(name) => self.put(name),
