@@ -6,7 +6,7 @@
 
 use crate::math::lanes::{Level, Work};
 use crate::math::{N_LANES, Numbers, Wide};
-use crate::runtime::solve::leap::{Covering, LeapRows, Leaps, STATES_MAX};
+use crate::runtime::leap::{Covering, LeapRows, Leaps, STATES_MAX};
 use crate::runtime::solve::segment::Segment;
 
 /// Agents of one type and mode.

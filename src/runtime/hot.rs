@@ -3,7 +3,7 @@
 
 use crate::runtime::engine::Engine;
 use crate::runtime::population::ABSENT;
-use crate::runtime::solve::leap::Covering;
+use crate::runtime::leap::Covering;
 
 /// How often a comparison that is awake does not try to sleep.
 const SKIP: u16 = 64;

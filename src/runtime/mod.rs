@@ -35,6 +35,7 @@ mod solve;
 pub mod limits;
 pub mod paper;
 pub mod observe;
+mod leap;
 mod herd;
 mod cold;
 mod population;

@@ -110,8 +110,7 @@ impl<'p> Agents<'p> {
         if agent.segment.end == t {
             states.copy_from_slice(&agent.states);
         } else {
-            // The near side of a root may lie before the last step's begin, by no more than the resolution of time.
-            agent.segment.states(t.max(agent.segment.start), states);
+            agent.segment.states(t, states);
         }
     }
 

@@ -101,6 +101,7 @@ impl Engine<'_, '_> {
         if counts.steps + counts.rejected <= self.limits.steps_max {
             return Ok(());
         }
+        self.thaw(0);
         let place = self.place(0);
         Err(Reason::StepLimit { place, limit: self.limits.steps_max }.into())
     }

@@ -52,7 +52,7 @@ fn a_flow_that_is_not_defined_names_the_expression_and_its_operands() {
     let failed = fails(
         "fn depth(z: real) = log(z - 1/2)
          agent A { state x = 1, y = 0  flow { x' = -1  y' = 2*depth(x) + 1 } }
-         system { a = A() }  run { until 3 }",
+         system { a = A() }  run { until 3  integrator tsit5 }",
         "HY0502",
     );
     assert_eq!(failed.pointed_at, ["y' = 2*depth(x) + 1", "log(z - 1/2)"]);
@@ -118,7 +118,7 @@ fn an_action_names_the_expression_and_its_operands() {
     let failed = fails(
         "agent A { state x = 1  discrete n = 0  flow { x' = 1 }
            half: when x >= 1.5 { x := 3 + 1/n } }
-         system { a = A() }  run { until 3 }",
+         system { a = A() }  run { until 3  integrator tsit5 }",
         "HY0503",
     );
     assert_eq!(failed.pointed_at, ["x := 3 + 1/n", "1/n"]);

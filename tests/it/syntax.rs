@@ -251,7 +251,7 @@ fn places_end_where_the_text_of_a_node_ends() {
     let (Item::Let(x), Item::Let(y)) = (&ast.items[0], &ast.items[1]) else { panic!("two definitions") };
     let ExprKind::Product(product) = &x.value.kind else { panic!("a product") };
     let ExprKind::Call { args, .. } = &y.value.kind else { panic!("a call") };
-    let places = [x.value.span, product.first.span, product.rest[0].op_span, args[0].span, args[1].span];
+    let places = [x.value.span, product.first.span, product.rest[0].outer, args[0].span, args[1].span];
     let places: Vec<&str> = places.iter().map(|span| &text[span.range()]).collect();
-    assert_eq!(places, ["(a + b)*c", "a + b", "*", "1 [m]", "o . x '"]);
+    assert_eq!(places, ["(a + b)*c", "a + b", "c", "1 [m]", "o . x '"]);
 }

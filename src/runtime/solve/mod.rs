@@ -11,7 +11,6 @@ pub mod tsit5;
 pub mod adams;
 pub mod series_step;
 pub mod taylor;
-pub mod leap;
 mod cuthill_mckee;
 mod banded;
 mod shifted;
