@@ -236,7 +236,7 @@ fn no_mutilated_program_makes_the_parser_panic() {
 
 #[test]
 fn places_end_where_the_text_of_a_node_ends() {
-    let text = "let x = (a + b)*c   // a comment\n\n let y = f(1 [m] , o . x ' ) ; run { until 3 }";
+    let text = "let x = (a + b)*(c)   // a comment\n\n let y = f(1 [m] , o . x ' ) ; run { until 3 }";
     let ast = syntax::parse(FileId(0), text).unwrap();
     let spans: Vec<&str> = ast
         .items
@@ -247,11 +247,11 @@ fn places_end_where_the_text_of_a_node_ends() {
             _ => "",
         })
         .collect();
-    assert_eq!(spans, ["let x = (a + b)*c", "let y = f(1 [m] , o . x ' )", "until 3"]);
+    assert_eq!(spans, ["let x = (a + b)*(c)", "let y = f(1 [m] , o . x ' )", "until 3"]);
     let (Item::Let(x), Item::Let(y)) = (&ast.items[0], &ast.items[1]) else { panic!("two definitions") };
     let ExprKind::Product(product) = &x.value.kind else { panic!("a product") };
     let ExprKind::Call { args, .. } = &y.value.kind else { panic!("a call") };
     let places = [x.value.span, product.first.span, product.rest[0].outer, args[0].span, args[1].span];
     let places: Vec<&str> = places.iter().map(|span| &text[span.range()]).collect();
-    assert_eq!(places, ["(a + b)*c", "a + b", "c", "1 [m]", "o . x '"]);
+    assert_eq!(places, ["(a + b)*(c)", "a + b", "(c)", "1 [m]", "o . x '"]);
 }
