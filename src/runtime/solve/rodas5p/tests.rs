@@ -61,11 +61,11 @@ fn trees() -> Vec<Tree> {
                 grown.push(Tree { order, at_stages, density: f64::from(order) * below });
                 continue;
             }
-            for child in first..trees.len() {
-                if trees[child].order <= nodes {
+            for (child, tree) in trees.iter().enumerate().skip(first) {
+                if tree.order <= nodes {
                     let mut chosen = chosen.clone();
                     chosen.push(child);
-                    branches.push((nodes - trees[child].order, child, chosen));
+                    branches.push((nodes - tree.order, child, chosen));
                 }
             }
         }
