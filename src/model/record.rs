@@ -174,7 +174,10 @@ impl<'a> Context<'a> {
         agents.sort_unstable();
         agents.dedup();
         let population = &self.model.population;
-        let whole = population.blocks.iter().zip(blocks).filter(|(_, wanted)| *wanted);
+        // An agent of a block that is wanted as a whole counts once.
+        let block_of = |agent: usize| population.blocks.partition_point(|block| block.first <= agent) - 1;
+        agents.retain(|&agent| !blocks[block_of(agent)]);
+        let whole = population.blocks.iter().zip(&blocks).filter(|(_, wanted)| **wanted);
         let whole: Vec<_> = whole.map(|(block, _)| block.first..block.first + block.count).collect();
         let inside = whole.iter().map(ExactSizeIterator::len).sum::<usize>();
         let most = self.model.limits.cells_max;
@@ -184,7 +187,6 @@ impl<'a> Context<'a> {
         }
         agents.extend(whole.into_iter().flatten());
         agents.sort_unstable();
-        agents.dedup();
         let of_type = |(ty, wanted): (&super::ir::AgentType, &Vec<bool>)| {
             let mut variables = vec![None; columns.len()];
             for ((name, variable), wanted) in ty.declared.iter().zip(wanted).rev() {
