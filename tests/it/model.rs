@@ -170,6 +170,12 @@ fn settings_of(text: &str) -> Settings {
                 let (name, value) = value.split_once('=').expect("NAME=VALUE");
                 settings.params.push((name.to_string(), value.to_string()));
             }
+            "--limit" => match value.split_once('=').expect("NAME=N") {
+                ("max_states", n) => settings.limits.states_max = n.parse().expect("a number"),
+                ("max_modes", n) => settings.limits.modes_max = n.parse().expect("a number"),
+                ("max_cells", n) => settings.limits.cells_max = n.parse().expect("a number"),
+                (other, _) => panic!("the limit {other} is not known to this test"),
+            },
             "--tolerance" => settings.tolerance = Some(value.parse().expect("a number")),
             other => panic!("{other} is not known to this test"),
         }
