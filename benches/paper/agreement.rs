@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use hyc::cli::compare::measure::{Logged, Measured, agreement};
 use hyc::cli::compare::{TIGHT, WITHIN};
-use hyc::runtime::paper::Algorithm;
+use hyc::runtime::paper::{Algorithm, Form};
 
 use crate::arena::{SEEDS, SIZES, UNTIL, run};
 use crate::cars::{SPREAD, bumper};
@@ -20,9 +20,9 @@ pub fn table(report: &mut Report, tick: &dyn Fn(&str)) {
     for n in SIZES {
         for seed in 1..=SEEDS {
             let mut program = bumper(n, seed, SPREAD, UNTIL, false);
-            let tight = run(&mut program, Algorithm::Masim, TIGHT, false);
+            let tight = run(&mut program, Algorithm::Masim(Form::Plain), TIGHT, false);
             for agreement in &mut all {
-                let run = run(&mut program, Algorithm::Masim, agreement.tolerance, false);
+                let run = run(&mut program, Algorithm::Masim(Form::Plain), agreement.tolerance, false);
                 agreement.add(&run, &tight);
             }
         }

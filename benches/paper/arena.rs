@@ -7,7 +7,7 @@ use hyc::cli::compare::table::geometric_mean;
 use hyc::cli::compare::{TIGHT, WITHIN};
 use hyc::codegen::program::Program;
 use hyc::runtime::limits::Limits;
-use hyc::runtime::paper::{Algorithm, Paper};
+use hyc::runtime::paper::{Algorithm, Form, Paper};
 
 use crate::cars::{SPREAD, bumper};
 use crate::figure::{Panel, Series, Style, falling_panel, figure, folder, log_panel, series, write};
@@ -66,7 +66,7 @@ pub fn run(program: &mut Program, algorithm: Algorithm, tolerance: f64, audit: b
 /// All three algorithms on one program.
 pub fn trio(program: &mut Program, n: usize, seed: u64, tolerance: f64, audit: bool) -> Trio {
     let paper = Paper::default();
-    let masim = run(program, Algorithm::Masim, tolerance, false);
+    let masim = run(program, Algorithm::Masim(Form::Plain), tolerance, false);
     let ma = run(program, Algorithm::Masim2004(paper), tolerance, audit);
     let sa = run(program, Algorithm::Sasim2004(paper), tolerance, audit);
     Trio { n, seed, tolerance, masim, ma, sa }
@@ -88,7 +88,7 @@ pub fn figures(report: &mut Report, tick: &dyn Fn(&str)) {
         tick(&format!("bumper, N = {n}"));
         for seed in 1..=SEEDS {
             let mut program = bumper(n, seed, SPREAD, UNTIL, false);
-            let tight = run(&mut program, Algorithm::Masim, TIGHT, false);
+            let tight = run(&mut program, Algorithm::Masim(Form::Plain), TIGHT, false);
             for tolerance in TOLERANCES {
                 let trio = trio(&mut program, n, seed, tolerance, true);
                 rows(&mut csv, &trio, &tight);

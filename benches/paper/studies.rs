@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use hyc::runtime::paper::{Algorithm, Paper};
+use hyc::runtime::paper::{Algorithm, Form, Paper};
 
 use crate::arena::{COSTS, SEEDS, Trio, UNTIL, mean, run, trio};
 use crate::cars::{SPREAD, bumper};
@@ -106,7 +106,9 @@ pub fn gamma(report: &mut Report, tick: &dyn Fn(&str)) {
     }
     tick("masim");
     let masim = (1..=SEEDS)
-        .map(|seed| run(&mut bumper(20, seed, SPREAD, UNTIL, false), Algorithm::Masim, 1e-4, false))
+        .map(|seed| {
+            run(&mut bumper(20, seed, SPREAD, UNTIL, false), Algorithm::Masim(Form::Plain), 1e-4, false)
+        })
         .map(|run| run.stats.steps as f64)
         .sum::<f64>();
     let _ = writeln!(text, "| `masim` | | | | | {:.0} |", masim / SEEDS as f64);
@@ -133,7 +135,9 @@ pub fn roll_back(report: &mut Report, tick: &dyn Fn(&str)) {
         "| window, s | steps undone, of all | roll-backs of more than one step, of all rewritten cars |\n|---:|---:|---:|\n",
     );
     let runs: Vec<_> = (1..=SEEDS)
-        .map(|seed| run(&mut bumper(20, seed, SPREAD, UNTIL, true), Algorithm::Masim, 1e-5, false))
+        .map(|seed| {
+            run(&mut bumper(20, seed, SPREAD, UNTIL, true), Algorithm::Masim(Form::Plain), 1e-5, false)
+        })
         .collect();
     for window in [0.1, 0.5, 2.0, 5.0, UNTIL] {
         let (mut undone, mut all, mut long, mut rewritten) = (0, 0, 0, 0);

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use hyc::cli::compare::measure::{Measured, measure};
 use hyc::codegen::program::Program;
 use hyc::runtime::limits::Limits;
-use hyc::runtime::paper::{Algorithm, Paper};
+use hyc::runtime::paper::{Algorithm, Form, Paper};
 
 use crate::cars::shipped;
 use crate::report::Report;
@@ -30,11 +30,11 @@ fn location(report: &mut Report) {
     const BALLS: usize = 12;
     const MODEL: &str = include_str!("../../models/double_crossing.hy");
     let n = [("n", BALLS.to_string())];
-    let found = run(&mut shipped(MODEL, &n), Algorithm::Masim);
+    let found = run(&mut shipped(MODEL, &n), Algorithm::Masim(Form::Plain));
     // The same flights with the barrier out of reach: every accepted step is a row.
     let steps = MODEL.replace("when x >= bar", "when x >= 2*bar");
     let steps = steps.replace("record Ball every 0.01 [s]", "record Ball");
-    let flights = run(&mut shipped(&steps, &n), Algorithm::Masim);
+    let flights = run(&mut shipped(&steps, &n), Algorithm::Masim(Form::Plain));
     let published = [Algorithm::Masim2004(Paper::default()), Algorithm::Sasim2004(Paper::default())];
     let published = published.map(|algorithm| run(&mut shipped(MODEL, &n), algorithm));
     let mut text = String::from(
@@ -78,7 +78,10 @@ fn multirate(report: &mut Report) {
     );
     for hold in ["0.1", "0.05", "0.025", "0.0125"] {
         let given = [("hold", hold.to_string())];
-        let run = run(&mut shipped(include_str!("../../models/multirate.hy"), &given), Algorithm::Masim);
+        let run = run(
+            &mut shipped(include_str!("../../models/multirate.hy"), &given),
+            Algorithm::Masim(Form::Plain),
+        );
         let steps =
             |name: &str| run.stats.types.iter().filter(|ty| ty.name == name).map(|ty| ty.steps).sum::<u64>();
         let (slow, coupled, held) = (steps("Slow"), steps("Coupled"), steps("Held"));
@@ -100,7 +103,8 @@ fn bodies(report: &mut Report) {
     for n in [6, 12, 24] {
         let given = [("n", n.to_string()), ("half", (5.0 * (f64::from(n) / 12.0).sqrt()).to_string())];
         let paper = Paper::default();
-        let algorithms = [Algorithm::Masim, Algorithm::Masim2004(paper), Algorithm::Sasim2004(paper)];
+        let algorithms =
+            [Algorithm::Masim(Form::Plain), Algorithm::Masim2004(paper), Algorithm::Sasim2004(paper)];
         let runs = algorithms
             .map(|algorithm| run(&mut shipped(include_str!("../../models/billiards.hy"), &given), algorithm));
         let missed = runs.each_ref().map(|run| {
@@ -129,7 +133,10 @@ fn aircraft(report: &mut Report) {
     );
     for angle in [60, 90, 120, 150, 180] {
         let given = [("angle", angle.to_string())];
-        let run = run(&mut shipped(include_str!("../../models/aircraft.hy"), &given), Algorithm::Masim);
+        let run = run(
+            &mut shipped(include_str!("../../models/aircraft.hy"), &given),
+            Algorithm::Masim(Form::Plain),
+        );
         let at = |agent: usize| run.rows.iter().filter(move |row| row.agent == agent);
         let distance =
             at(0).zip(at(1)).map(|(a, b)| (a.cells[0] - b.cells[0]).hypot(a.cells[1] - b.cells[1]));
@@ -156,7 +163,8 @@ fn aircraft(report: &mut Report) {
 /// Thresholds: `genetic_switch.hy`.
 fn genes(report: &mut Report) {
     let mut text = String::from("| transition | at, h |\n|---|---|\n");
-    let run = run(&mut shipped(include_str!("../../models/genetic_switch.hy"), &[]), Algorithm::Masim);
+    let run =
+        run(&mut shipped(include_str!("../../models/genetic_switch.hy"), &[]), Algorithm::Masim(Form::Plain));
     for name in ["waken", "reach", "flush", "dim", "fade"] {
         let of = run.events.iter().filter(|event| event.transition == format!("Colony.{name}"));
         let times: Vec<String> = of.map(|event| format!("{:.4}", event.time / 3600.0)).collect();

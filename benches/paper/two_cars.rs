@@ -2,7 +2,7 @@
 
 use hyc::cli::compare::measure::{Measured, measure};
 use hyc::runtime::limits::Limits;
-use hyc::runtime::paper::{Algorithm, Paper};
+use hyc::runtime::paper::{Algorithm, Form, Paper};
 use plotters::prelude::SeriesLabelPosition;
 
 use crate::cars::two_cars;
@@ -51,7 +51,7 @@ pub fn figures(report: &mut Report) {
         let mut program = two_cars(text, until);
         let run = measure(&mut program, Algorithm::Masim2004(paper), 1e-5, &Limits::default(), true)
             .expect("the cars can be simulated");
-        let masim = measure(&mut program, Algorithm::Masim, 1e-5, &Limits::default(), false)
+        let masim = measure(&mut program, Algorithm::Masim(Form::Plain), 1e-5, &Limits::default(), false)
             .expect("the cars can be simulated");
         let event = run.events.first().map(|event| event.time);
         let until = event.unwrap_or(until);

@@ -1,6 +1,6 @@
 //! The block interpreter: a tape over 32 agents at once, instruction by instruction, lane by lane the bits of the others.
 //!
-//! In: a [`Tape`], the columns of the agents as [`Block`]s. Out: a [`Block`] for each output, and whole steps of
+//! In: a tape, the columns of the agents as [`Block`]s. Out: a [`Block`] for each output, and whole steps of
 //! [`TSIT5`] in the order of operations of `math::runge_kutta`. What a scalar instruction costs by being looked at is
 //! shared by 32 lanes, and `math::lanes` has the CPU's widest instructions.
 //! Loads and constants are operands of their own; sine and cosine of one angle are one instruction. Nothing is allocated once
@@ -68,6 +68,7 @@ pub struct BlockView<'a> {
 #[derive(Clone, Debug, Default)]
 pub struct BlockScratch {
     /// Boxed, so that a result is written beside its operands and then exchanged for its register.
+    #[allow(clippy::vec_box, reason = "exchanged, not copied")]
     registers: Vec<Box<Block>>,
     spare: [Box<Block>; 2],
     stage: Vec<Block>,
@@ -194,6 +195,7 @@ impl BlockTape {
         }
     }
 
+    #[allow(clippy::vec_box, reason = "exchanged, not copied")]
     fn run(
         &self,
         leaves: &Leaves<'_>,

@@ -4,8 +4,8 @@ use smallvec::SmallVec;
 
 use crate::codegen::program::{Flow, Program, Slot};
 use crate::runtime::herd::{Advanced, Herd};
-use crate::runtime::solve::control::Accuracy;
 use crate::runtime::leap::{Covering, Leaps, STATES_MAX};
+use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::segment::{N_MAX, Segment};
 use crate::runtime::solve::series_step;
 

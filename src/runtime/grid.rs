@@ -58,7 +58,7 @@ impl Grid {
 
     /// How many boxes there are.
     pub fn len(&self) -> usize {
-        if self.n == 0 { 0 } else { self.boxes.len() / self.n }
+        self.boxes.len().checked_div(self.n).unwrap_or(0)
     }
 
     /// A box.
@@ -145,7 +145,8 @@ impl Grid {
     fn cells(&self, number: u32) -> Option<SmallVec<[Cell; 8]>> {
         let mut cells: SmallVec<[Cell; 8]> = SmallVec::from_elem(0, 1);
         for (dimension, bound) in self.get(number).iter().take(DIMENSIONS).enumerate() {
-            if !(bound.width() * self.scale[dimension] < CELLS_MAX) {
+            let is_narrow = bound.width() * self.scale[dimension] < CELLS_MAX;
+            if !is_narrow {
                 return None;
             }
             let (first, last) = (self.place(dimension, bound.lo), self.place(dimension, bound.hi));
@@ -185,7 +186,7 @@ mod tests {
     fn some(n: usize, dimensions: usize, die: &mut dyn FnMut() -> f64) -> Vec<Interval> {
         (0..n * dimensions)
             .map(|_| {
-                let (place, size) = (1e3 * (die() - 0.5), 10.0_f64.powf(4.0 * die() - 2.5));
+                let (place, size) = (100.0 * (die() - 0.5), 10.0_f64.powf(4.0 * die() - 2.5));
                 if die() < 0.01 { Interval::WHOLE } else { Interval { lo: place, hi: place + size } }
             })
             .collect()
@@ -204,7 +205,7 @@ mod tests {
             for a in 0..300 {
                 expected.extend((a + 1..300).filter(|&b| overlap(grid.get(a), grid.get(b))).map(|b| (a, b)));
             }
-            assert!(dimensions == 4 || !expected.is_empty());
+            assert!(!expected.is_empty());
             assert_eq!(found, expected, "{dimensions} dimensions");
         }
     }

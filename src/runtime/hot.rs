@@ -2,8 +2,8 @@
 //! the plain form; all others are cold.
 
 use crate::runtime::engine::Engine;
-use crate::runtime::population::ABSENT;
 use crate::runtime::leap::Covering;
+use crate::runtime::population::ABSENT;
 
 /// How often a comparison that is awake does not try to sleep.
 const SKIP: u16 = 64;

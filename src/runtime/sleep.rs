@@ -193,7 +193,8 @@ fn out_of_range(
         let (da, db) = (t - ta, t - tb);
         a + f64::min(da * ra.lo, da * ra.hi) - (b + f64::max(db * rb.lo, db * rb.hi))
     };
-    if !(low(from) > range) {
+    let is_out = low(from) > range;
+    if !is_out {
         return None;
     }
     // The bound is the least of lines: above the range at both ends, above it between them.

@@ -69,7 +69,7 @@ fn expression(dice: &mut Dice, depth: usize) -> Tree {
     if depth == 0 {
         return if dice.percent(75) { Tree::X } else { Tree::Number(number(dice)) };
     }
-    let inner = |dice: &mut Dice| Box::new(expression(dice, depth - 1));
+    let inner = |dice: &mut Dice| expression(dice, depth - 1);
     match dice.below(17) {
         0..=4 => {
             let f = *dice.pick(&["floor", "ceil", "round", "trunc", "sign"]);
@@ -78,23 +78,21 @@ fn expression(dice: &mut Dice, depth: usize) -> Tree {
         5 => Tree::Call("abs", vec![inner(dice)]),
         6 => Tree::Call("sin", vec![inner(dice)]),
         7 => Tree::Call("atan2", vec![inner(dice), inner(dice)]),
-        8 => Tree::Call("atan2", vec![inner(dice), Box::new(Tree::Number(number(dice)))]),
-        9 | 10 => {
-            Tree::Call("mod", vec![inner(dice), Box::new(Tree::Number(0.5 + dice.below(13) as f64 / 8.0))])
-        }
+        8 => Tree::Call("atan2", vec![inner(dice), Tree::Number(number(dice))]),
+        9 | 10 => Tree::Call("mod", vec![inner(dice), Tree::Number(0.5 + dice.below(13) as f64 / 8.0)]),
         11 => Tree::Call("min", vec![inner(dice), inner(dice)]),
-        12 => Tree::Call("max", vec![inner(dice), Box::new(Tree::Number(number(dice)))]),
+        12 => Tree::Call("max", vec![inner(dice), Tree::Number(number(dice))]),
         13 => Tree::Call("if", vec![inner(dice), inner(dice), inner(dice), inner(dice)]),
         14 => Tree::Call("+", vec![inner(dice), inner(dice)]),
         15 => Tree::Call("-", vec![inner(dice), inner(dice)]),
-        _ => Tree::Call("*", vec![inner(dice), Box::new(Tree::Number(number(dice)))]),
+        _ => Tree::Call("*", vec![inner(dice), Tree::Number(number(dice))]),
     }
 }
 
 enum Tree {
     X,
     Number(f64),
-    Call(&'static str, Vec<Box<Tree>>),
+    Call(&'static str, Vec<Tree>),
 }
 
 impl Tree {
@@ -212,6 +210,27 @@ fn agree(engine: &[f64], scan: &[f64], is_point: &dyn Fn(f64) -> bool) -> bool {
     scan.iter().all(|&t| near(t, engine) == 1) && engine.iter().all(|&t| near(t, scan) == 1 || is_point(t))
 }
 
+/// What decision 0003 says is not told yet: an atan2 whose operands may come to the origin together, and an abs that only
+/// touches a surface of the sign or the atan2 around it.
+fn is_beyond_the_method(guard: &str) -> bool {
+    let operands = |from: usize| {
+        let mut depth = 0;
+        let end = guard[from..].find(|c| {
+            depth += i32::from(c == '(') - i32::from(c == ')');
+            depth < 0 || depth == 0 && c == ','
+        });
+        end.map_or((&guard[from..], ""), |end| (&guard[from..from + end], &guard[from + end..]))
+    };
+    let origin = guard.match_indices("atan2(").any(|(place, word)| {
+        let (first, rest) = operands(place + word.len());
+        let (second, _) = operands(guard.len() - rest.len() + 1);
+        first.contains('x') && second.contains('x') || first.contains("abs(")
+    });
+    let touched =
+        guard.match_indices("sign(").any(|(place, word)| operands(place + word.len()).0.contains("abs("));
+    origin || touched
+}
+
 #[test]
 fn nested_jumps_agree_with_a_scan() {
     let first = std::env::var("HYC_FIRST").ok().and_then(|text| text.parse().ok()).unwrap_or(0_u64);
@@ -228,6 +247,9 @@ fn nested_jumps_agree_with_a_scan() {
         let until = 4.0;
         let Some(expected) = scanned(&e, relation, level, start, v, until) else { continue };
         let guard = format!("{} {relation} {level}", e.text());
+        if is_beyond_the_method(&guard) {
+            continue;
+        }
         let run = simulate(&format!(
             "agent A {{ state x = {start}  discrete n = 0  flow {{ x' = {v} }}  hit: when {guard} {{ n := n + 1 }} }}
              system {{ a = A() }}  run {{ until {until}  tolerance 1e-9 }}"
@@ -249,5 +271,5 @@ fn nested_jumps_agree_with_a_scan() {
     }
     println!("{compared} of {models} compared, {events} events");
     assert!(wrong.is_empty(), "{} of {compared} differ:\n{}", wrong.len(), wrong.join("\n"));
-    assert!(models < 100 || 2 * compared > models && 2 * events > compared, "{compared} {events}");
+    assert!(models < 100 || 3 * compared > models && 2 * events > compared, "{compared} {events}");
 }

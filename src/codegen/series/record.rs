@@ -22,7 +22,7 @@ pub enum NoSeries {
     ReadsOthers,
     /// This operator jumps or has a kink, and nothing holds its branch.
     Jumps(Op),
-    /// It would have more instructions than [`LENGTH_MAX`].
+    /// It would have more instructions than `LENGTH_MAX`.
     TooLong,
 }
 
