@@ -4,6 +4,8 @@
 //! began, and where the steps began that lead over the present; from there its way can be followed again, to the bit, by
 //! whoever asks where it was ([`Leaps::follow`]). In lanes, an agent that has come far enough makes room for the next.
 
+use std::cell::RefCell;
+
 use crate::math::lanes::{Level, Work};
 use crate::math::{N_LANES, Numbers, Wide};
 use crate::runtime::leap::{Covering, LeapRows, Leaps, STATES_MAX};
@@ -23,6 +25,8 @@ pub struct Herd<'p> {
     /// How far each has come, s; infinite for one that is not cold.
     clocks: Vec<f64>,
     rows: Vec<f64>,
+    /// Scratch.
+    alone: RefCell<LeapRows<f64>>,
 }
 
 /// Steps taken, and those that were refused.
@@ -43,7 +47,8 @@ impl<'p> Herd<'p> {
     /// No agents yet; `inputs` are the auxiliary columns that the flow reads.
     pub fn new(leaps: Leaps<'p>, inputs: Vec<usize>) -> Self {
         let n = leaps.tape.n_states;
-        Self { leaps, inputs, n, agents: Vec::new(), clocks: Vec::new(), rows: Vec::new() }
+        let alone = RefCell::new(LeapRows::new(&leaps));
+        Self { leaps, inputs, n, agents: Vec::new(), clocks: Vec::new(), rows: Vec::new(), alone }
     }
 
     /// A row: the states; time and states at the begin of the last step; those from which the way is followed; inputs.
@@ -109,7 +114,7 @@ impl<'p> Herd<'p> {
     pub fn follow(&self, place: usize, until: f64, x: &mut [f64], segment: &mut Segment) -> Option<Covering> {
         let (start, states) = self.known(place);
         x.copy_from_slice(states);
-        let mut rows = LeapRows::new(&self.leaps);
+        let mut rows = self.alone.borrow_mut();
         self.fix(place, &mut rows.fixed);
         self.leaps.follow((start, until), x, &mut rows, segment)
     }

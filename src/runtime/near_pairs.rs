@@ -176,15 +176,31 @@ impl Engine<'_, '_> {
         })
     }
 
-    /// Arms an instance whose condition has been false until now.
+    /// Arms an instance of a pair that has just come near: its condition has been false until now.
     pub fn meet(&mut self, instance: u32) {
-        let time = self.present.time;
-        let state = &mut self.guards.instances[instance as usize];
-        (state.active, state.armed, state.entry) = (true, true, time);
+        self.arm_again(instance);
         for index in self.guards.atom_range(instance) {
             if !self.settle_far(index) {
                 self.settle(index, Rule::Rates, &Written::default());
             }
         }
+    }
+
+    /// The same of one that may come near from now on, and is not yet: its condition is false.
+    pub fn await_pair(&mut self, instance: u32) {
+        if self.guards.definition(instance).comparisons.len() != 1 {
+            return self.meet(instance);
+        }
+        self.arm_again(instance);
+        let time = self.present.time;
+        for index in self.guards.atom_range(instance) {
+            self.recertify(index, time);
+        }
+    }
+
+    fn arm_again(&mut self, instance: u32) {
+        let time = self.present.time;
+        let state = &mut self.guards.instances[instance as usize];
+        (state.active, state.armed, state.entry) = (true, true, time);
     }
 }

@@ -44,7 +44,7 @@ impl Engine<'_, '_> {
                 let new = self.list_pairs((from + span).min(self.time_end))?;
                 self.neighbours.span = self.next_span(new.len());
                 for instance in new {
-                    self.meet(instance);
+                    self.await_pair(instance);
                 }
             }
             let mut until = self.time_end;
