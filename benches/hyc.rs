@@ -22,7 +22,7 @@ use hyc::codegen::{self, Backend};
 use hyc::math::{N_LANES, Numbers, Wide};
 use hyc::model::{self, Files, Settings};
 use hyc::runtime::observe::{Event, Last, Observer, Outcome, Row};
-use hyc::runtime::{self, Limits};
+use hyc::runtime::{self, Algorithm, Form, Limits};
 use hyc::syntax;
 
 /// The data files of a model, by name.
@@ -68,8 +68,17 @@ fn compile(text: &str, shelf: &mut Shelf, settings: &Settings, backend: Backend)
 }
 
 fn simulate(program: &Program) -> Outcome {
-    runtime::simulate(program, &Limits::default(), &AtomicBool::new(false), &mut Silence)
+    simulate_by(Form::default(), program)
 }
+
+/// A run in one form of the engine.
+fn simulate_by(form: Form, program: &Program) -> Outcome {
+    let (limits, interrupt) = (Limits::default(), AtomicBool::new(false));
+    runtime::simulate_by(Algorithm::Masim(form), program, &limits, &interrupt, &mut Silence)
+}
+
+/// Up to so many cars the plain form runs beside the fast one: it lists all pairs.
+const PLAIN_MAX: usize = 500;
 
 /// The median of so many runs, in seconds.
 fn median(runs: usize, mut work: impl FnMut()) -> f64 {
@@ -248,9 +257,9 @@ fn back_ends() {
 
 /// The bumper problem against the number of cars.
 fn sizes() {
-    println!("\n| N | compile (ms) | run (ms) | steps | events | run / N (us) |");
-    println!("|---|---|---|---|---|---|");
-    for n in [2, 5, 10, 20, 50, 100, 200, 500] {
+    println!("\n| N | compile (ms) | run (ms) | steps | events | run / N (us) | plain form, run (ms) |");
+    println!("|---|---|---|---|---|---|---|");
+    for n in [2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 20_000] {
         let begun = Instant::now();
         let program = bumper(n, Backend::Jit);
         let compiled = begun.elapsed().as_secs_f64() * 1e3;
@@ -259,10 +268,12 @@ fn sizes() {
             let outcome = simulate(&program);
             (steps, events) = (outcome.stats.steps + outcome.stats.rejected, outcome.stats.events);
         });
+        let plain = (n <= PLAIN_MAX).then(|| median(3, || drop(simulate_by(Form::Plain, &program))));
         println!(
-            "| {n} | {compiled:.1} | {:.2} | {steps} | {events} | {:.1} |",
+            "| {n} | {compiled:.1} | {:.2} | {steps} | {events} | {:.1} | {} |",
             run * 1e3,
-            run * 1e6 / n as f64
+            run * 1e6 / n as f64,
+            plain.map_or("".into(), |plain| format!("{:.2}", plain * 1e3))
         );
     }
 }

@@ -30,6 +30,10 @@
 //! `masim` is the loop: certify what the smallest clock allows, write samples, execute the earliest instant, else
 //! advance the group that lags most. `certify` excludes or isolates roots on the agents' dense output, or puts a
 //! comparison to sleep by an enclosure of the flows (`enclose`).
+//!
+//! `windows` runs that loop for one window of time after another, the fast form: pairs are listed when they are near (`near_pairs`,
+//! `grid`, `reach`), comparisons sleep beyond the window (`sleep`), and agents that nothing can happen to run ahead in lanes
+//! (`hot`, `cold`, `herd`, `leap`).
 
 mod solve;
 pub mod limits;
