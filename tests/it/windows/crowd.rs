@@ -1,4 +1,5 @@
 //! Crowds at random, as text: many agents in an arena, with walls, teleports, pauses, and meetings that count or move.
+//! A crowd may be chaotic: all its speeds are multiplied by the parameter `nudge`.
 
 use std::fmt::Write as _;
 
@@ -12,7 +13,7 @@ pub fn model(seed: u64) -> String {
     let n_types = 1 + dice.below(2);
     let sizes: Vec<usize> = (0..n_types).map(|_| 10 + dice.below(if dims == 1 { 20 } else { 45 })).collect();
     let half = 3.0 + dice.below(5) as f64 + if dims == 1 { 30.0 } else { 0.0 };
-    let mut text = String::new();
+    let mut text = "param nudge = 1\n".to_string();
     let turning: Vec<bool> = (0..n_types).map(|ty| agent(&mut dice, ty, names, half, &mut text)).collect();
     for number in 0..1 + dice.below(3) {
         interaction(&mut dice, number, names, n_types, &mut text);
@@ -51,7 +52,7 @@ fn agent(dice: &mut Dice, ty: usize, names: &[&str], half: f64, text: &mut Strin
         (_, _) => "0.5*w*sin(th)".to_string(),
     };
     let rates: Vec<String> =
-        (0..names.len()).map(|axis| format!("{}' = {}", names[axis], rate(axis, dice))).collect();
+        (0..names.len()).map(|axis| format!("{}' = nudge*({})", names[axis], rate(axis, dice))).collect();
     let turn = if turns { if dice.percent(30) { "  th' = w - 0.1*th" } else { "  th' = w" } } else { "" };
     let flow = format!("flow {{ {}{turn} }}", rates.join("  "));
     let modes = dice.percent(50);

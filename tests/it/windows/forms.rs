@@ -62,7 +62,8 @@ pub fn difference(ours: &Run, theirs: &Run, until: f64) -> Option<(f64, String)>
             return Some((time, story));
         };
         if what(one) != what(other) || (one.time - other.time).abs() > TIME {
-            return Some((one.time.min(other.time), format!("event {k}: {one:?}\n  expected {other:?}")));
+            let story = format!("event {k}: {one:?}\n  expected {other:?}\n{}", drift(&a[..k], &b[..k]));
+            return Some((one.time.min(other.time), story));
         }
     }
     if until < f64::INFINITY {
@@ -70,6 +71,20 @@ pub fn difference(ours: &Run, theirs: &Run, until: f64) -> Option<(f64, String)>
     }
     let at_end = |story: Option<String>| story.map(|story| (f64::INFINITY, story));
     at_end(ends(ours, theirs)).or_else(|| at_end(samples(ours, theirs)))
+}
+
+/// From which event on the times were apart by how much, in words.
+fn drift(ours: &[Fired], theirs: &[Fired]) -> String {
+    let mut story = String::new();
+    let mut bound = 1e-13;
+    for (k, (one, other)) in ours.iter().zip(theirs).enumerate() {
+        let apart = (one.time - other.time).abs();
+        if apart > bound {
+            let _ = writeln!(story, "  apart by {apart:e} s at event {k} {:?}", what(one));
+            bound = 10.0 * apart;
+        }
+    }
+    story
 }
 
 /// Everything of an event but its time.

