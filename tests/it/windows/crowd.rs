@@ -25,11 +25,12 @@ pub fn model(seed: u64) -> String {
                 names.iter().map(|name| format!("{name} = {}", dice.number(-half, half))).collect();
             arguments.push(format!("u = {}", dice.signed(0.1, if turning[ty] { 2.0 } else { 3.0 })));
             arguments.push(format!("w = {}", dice.signed(0.2, 3.0)));
-            let _ = writeln!(text, "  {}{k} = {}({})", ["p", "q"][ty], ["Pod", "Qit"][ty], arguments.join(", "));
+            let _ =
+                writeln!(text, "  {}{k} = {}({})", ["p", "q"][ty], ["Pod", "Qit"][ty], arguments.join(", "));
         }
     }
     let _ = writeln!(text, "}}");
-    let _ = writeln!(text, "run {{ until {} }}", dice.number(2.0, 6.0));
+    let _ = writeln!(text, "run {{ until {} }}", dice.number(0.6, 1.8));
     text
 }
 

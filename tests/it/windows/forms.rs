@@ -108,7 +108,9 @@ fn in_order(run: &Run, until: f64) -> Vec<Fired> {
 /// Sorts events, but for those that have an agent in common.
 fn sort_ties(events: &mut [Fired]) {
     let share = |a: &Fired, b: &Fired| {
-        [&b.agent, &b.other].into_iter().any(|name| !name.is_empty() && (*name == a.agent || *name == a.other))
+        [&b.agent, &b.other]
+            .into_iter()
+            .any(|name| !name.is_empty() && (*name == a.agent || *name == a.other))
     };
     let key = |event: &Fired| (event.transition.clone(), event.agent.clone(), event.other.clone());
     for k in 1..events.len() {
@@ -121,7 +123,9 @@ fn sort_ties(events: &mut [Fired]) {
 }
 
 fn is_near(a: f64, b: f64) -> bool {
-    a.to_bits() == b.to_bits() || (a - b).abs() <= VALUE * (1.0 + a.abs().max(b.abs())) || a.is_nan() && b.is_nan()
+    a.to_bits() == b.to_bits()
+        || (a - b).abs() <= VALUE * (1.0 + a.abs().max(b.abs()))
+        || a.is_nan() && b.is_nan()
 }
 
 /// How the ends differ.

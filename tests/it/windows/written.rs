@@ -336,8 +336,10 @@ fn distances_in_one_two_and_three_dimensions() {
         let start = each(&|k, name| format!("{name} = {side}*hash(i, {k})")).join(", ");
         let rates = each(&|k, name| format!("{name}' = 3*hash(i, {}) - 1.5", k + 5)).join("  ");
         let walls = each(&|_, name| {
-            format!("hi_{name}: when {name} >= {side} {{ {name} := {name} - {side} }}
-                     lo_{name}: when {name} <= -0.1 {{ {name} := {name} + {side} }}")
+            format!(
+                "hi_{name}: when {name} >= {side} {{ {name} := {name} - {side} }}
+                     lo_{name}: when {name} <= -0.1 {{ {name} := {name} + {side} }}"
+            )
         });
         let distance = each(&|_, name| format!("(a.{name} - b.{name})^2")).join(" + ");
         alike(
