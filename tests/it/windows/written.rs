@@ -350,7 +350,7 @@ fn distances_in_one_two_and_three_dimensions() {
                  system {{ a = A[100](i = index) }}  run {{ until 8 }}",
                 walls.join("\n")
             ),
-            150,
+            60,
         );
     }
 }
