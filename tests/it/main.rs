@@ -40,5 +40,6 @@ mod differential;
 mod draws;
 mod units;
 mod robust;
+mod windows;
 mod aggregates;
 mod limits;
