@@ -191,8 +191,10 @@ impl<'p> Truths<'_, 'p> {
                 }
             }
             Condition::Rising(number, condition) => {
-                let at = At { instance, base: self.guards.definition(instance).base, side: Side::After };
-                if !self.condition(at, condition, slots) {
+                // What is true at this instant has not been false in it yet, though it is so just after.
+                let base = self.guards.definition(instance).base;
+                let holds = |side| self.condition(At { instance, base, side }, condition, &mut slots.clone());
+                if !holds(Side::At) && !holds(Side::After) {
                     seen.push(self.guards.rising_index(self.agents, instance, *number, slots));
                 }
             }

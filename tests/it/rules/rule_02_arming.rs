@@ -256,6 +256,18 @@ fn rule_02_rising_waits_until_the_condition_has_been_false() {
 }
 
 #[test]
+fn rule_02_rising_does_not_take_the_end_of_its_condition_for_its_begin() {
+    // x = cos t falls through 0 at pi/2, where another transition writes the agent, and rises at 3 pi/2
+    let run = simulate(
+        "agent A { state x = 1, v = 0  discrete n = 0  flow { x' = v  v' = -x }
+           falls: when x <= 0 { n := n + 1 }  rises: when rising(x >= 0) { n := n + 1 } }
+         system { a = A() }  run { until 6  tolerance 1e-10 }",
+    );
+    all_near(&run.times("A.falls"), &[PI / 2.0], 1e-8);
+    all_near(&run.times("A.rises"), &[3.0 * PI / 2.0], 1e-8);
+}
+
+#[test]
 fn rule_02_rising_counts_from_arming() {
     // in Second x >= 1 is true on entry; it is false for a while after the reset at 3
     let run = simulate(
