@@ -145,7 +145,7 @@ impl Enclosures {
         let span = Interval { lo: 0.0, hi: horizon };
         for (&x, &rate) in self.state.iter().zip(rates) {
             let bound = Interval { lo: x, hi: x }.add(span.mul(rate));
-            let bound = self.padded(bound);
+            let bound = self.accuracy.padded(bound);
             self.boxes.push(bound);
         }
     }
@@ -201,7 +201,7 @@ impl Enclosures {
         let time = Interval { lo: t, hi: t + horizon };
         let span = Interval { lo: 0.0, hi: horizon };
         let mut guess: Vec<Interval> =
-            start.iter().map(|&x| self.padded(Interval { lo: x, hi: x })).collect();
+            start.iter().map(|&x| self.accuracy.padded(Interval { lo: x, hi: x })).collect();
         for _ in 0..TRIES {
             let rates = self.rates(agents, group, &guess, time);
             let image: Vec<Interval> = start
@@ -220,7 +220,7 @@ impl Enclosures {
             guess = image
                 .iter()
                 .zip(&guess)
-                .map(|(&image, &guess)| self.padded(grown(image.hull(guess))))
+                .map(|(&image, &guess)| self.accuracy.padded(grown(image.hull(guess))))
                 .collect();
         }
         None
@@ -264,12 +264,6 @@ impl Enclosures {
             all.extend_from_slice(&rates);
         }
         all
-    }
-
-    /// Room for what the integration may be off by.
-    fn padded(&self, bound: Interval) -> Interval {
-        let pad = 10.0 * (self.accuracy.absolute + self.accuracy.tolerance * bound.mag());
-        Interval { lo: bound.lo - pad, hi: bound.hi + pad }
     }
 }
 

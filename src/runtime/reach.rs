@@ -196,8 +196,6 @@ impl Reaches {
 
     /// x + way, with room for what the integration may be off by.
     fn padded(&self, x: f64, way: Interval) -> Interval {
-        let bound = Interval { lo: x, hi: x }.add(way);
-        let pad = 10.0 * (self.accuracy.absolute + self.accuracy.tolerance * bound.mag());
-        Interval { lo: bound.lo - pad, hi: bound.hi + pad }
+        self.accuracy.padded(Interval { lo: x, hi: x }.add(way))
     }
 }

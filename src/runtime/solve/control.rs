@@ -3,6 +3,7 @@
 //! A step is accepted when max over i of |err_i| / (absolute + tolerance |x_i|) <= 1. The next step follows the
 //! proportional-integral rule of Gustafsson (1991), as in Hairer & Wanner, Solving ODEs II, IV.2.
 
+use crate::math::Interval;
 use crate::math::elementary::{exp, log};
 
 /// The accuracy asked for.
@@ -27,6 +28,12 @@ impl Accuracy {
             norm = norm.max(ratio);
         }
         norm
+    }
+
+    /// Bounds of a state with room for what the integration may be off by.
+    pub fn padded(&self, bound: Interval) -> Interval {
+        let pad = 10.0 * (self.absolute + self.tolerance * bound.mag());
+        Interval { lo: bound.lo - pad, hi: bound.hi + pad }
     }
 }
 
