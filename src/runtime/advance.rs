@@ -12,7 +12,7 @@ use crate::runtime::detect::{AtomCurve, CurveRows};
 use crate::runtime::flow::{GroupFlow, Witness};
 use crate::runtime::groups::{Group, KinkHit};
 use crate::runtime::limits::Limits;
-use crate::runtime::population::{Agents, Slots};
+use crate::runtime::population::{Agent, Agents, Slots};
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::integrate::{Integrator, Stuck};
 use crate::runtime::solve::method::Stretch;
@@ -124,6 +124,11 @@ impl Stepper {
             return Advance::Turned(hits);
         }
         if group.clock == f64::INFINITY {
+            return Advance::Moved;
+        }
+        if let [agent] = group.members[..]
+            && retake(agents, agent, group)
+        {
             return Advance::Moved;
         }
         match self.accepted_step(agents, group) {
@@ -350,9 +355,20 @@ pub fn cut(agents: &mut Agents<'_>, group: &mut Group, t: f64) {
     }
     for &member in &group.members {
         agents.agents[member].segment.cut(t);
+        agents.cold.void_track(member);
     }
     group.integration.restart();
     group.version += 1;
+}
+
+/// Has an agent take its next step from its track, if it has been taken there.
+fn retake(agents: &mut Agents<'_>, agent: usize, group: &mut Group) -> bool {
+    let Agents { agents, cold, .. } = agents;
+    let Agent { states, segment, .. } = &mut agents[agent];
+    let Some(step) = cold.kept_step(agent, group.clock, states, segment) else { return false };
+    group.integration.note_accepted(step.start, step.h, step.ratio);
+    group.clock = step.end;
+    true
 }
 
 /// Sets the locks that some kinks change.

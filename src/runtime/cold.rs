@@ -3,11 +3,13 @@
 use smallvec::SmallVec;
 
 use crate::codegen::program::{Flow, Program, Slot};
+use crate::math::Interval;
 use crate::runtime::herd::{Advanced, Herd};
 use crate::runtime::leap::{Covering, Leaps, STATES_MAX};
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::segment::{N_MAX, Segment};
 use crate::runtime::solve::series_step;
+use crate::runtime::tracks::TrackStep;
 
 /// A place in a herd.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,6 +104,65 @@ impl<'p> Cold<'p> {
     ) -> Option<Covering> {
         let (herd, place) = self.find(agent);
         herd.follow(place, t, states, segment)
+    }
+
+    /// The states of a cold agent at `t`, from which or from before which its way is followed.
+    pub fn states_at(&self, agent: usize, t: f64, states: &mut [f64]) {
+        let (herd, place) = self.find(agent);
+        herd.states_at(place, t, states);
+    }
+
+    /// Forgets all tracks.
+    pub fn clear_tracks(&mut self) {
+        self.herds.iter_mut().for_each(|herd| herd.tracks.clear());
+    }
+
+    /// Of how many agents steps are kept.
+    pub fn n_tracked(&self) -> usize {
+        self.herds.iter().map(|herd| herd.tracks.wanted().len()).sum()
+    }
+
+    /// Has the steps of a cold agent kept when it is advanced next.
+    pub fn want_track(&mut self, agent: usize) {
+        let Place { herd, place, cold } = self.places[agent];
+        if cold {
+            self.herds[herd as usize].tracks.want(place as usize);
+        }
+    }
+
+    /// The steps that were kept of an agent are not its steps any more.
+    pub fn void_track(&mut self, agent: usize) {
+        if let Some(&Place { herd, place, .. }) = self.places.get(agent)
+            && herd != NONE
+        {
+            self.herds[herd as usize].tracks.void(place as usize);
+        }
+    }
+
+    /// The step that was kept of an agent, not cold now, from `t` on, and the states at its end.
+    pub fn kept_step(
+        &self,
+        agent: usize,
+        t: f64,
+        states: &mut [f64],
+        segment: &mut Segment,
+    ) -> Option<TrackStep> {
+        let &Place { herd, place, .. } = self.places.get(agent).filter(|place| place.herd != NONE)?;
+        let tracks = &self.herds[herd as usize].tracks;
+        let step = tracks.beginning(place as usize, t)?;
+        Some(tracks.take(step, states, segment))
+    }
+
+    /// Bounds of a state of a cold agent over [s, e], by the steps that were kept of it; none if they do not cover that.
+    pub fn range(&self, agent: usize, state: usize, span: (f64, f64)) -> Option<Interval> {
+        let (herd, place) = self.find(agent);
+        herd.tracks.range(place, state, span)
+    }
+
+    /// The time from which the way of a cold agent is followed, s.
+    pub fn known_from(&self, agent: usize) -> f64 {
+        let (herd, place) = self.find(agent);
+        herd.known(place).0
     }
 
     /// The time and the states from which the way of a cold agent is followed.

@@ -100,12 +100,7 @@ impl<'p> Agents<'p> {
     pub fn states_at(&self, number: usize, t: f64, states: &mut [f64]) {
         let agent = &self.agents[number];
         if self.cold.is_cold(number) && self.cold.knows(number, t) {
-            let mut segment = Segment::default();
-            self.cold.follow(number, t, states, &mut segment);
-            if segment.end != t {
-                segment.states(t, states);
-            }
-            return;
+            return self.cold.states_at(number, t, states);
         }
         if agent.segment.end == t {
             states.copy_from_slice(&agent.states);

@@ -71,7 +71,7 @@ impl Engine<'_, '_> {
     }
 
     /// Whether a comparison can be bounded by the boxes of its agents.
-    fn is_bounded(&self, index: usize) -> bool {
+    pub fn is_bounded(&self, index: usize) -> bool {
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
         let absent = atom.slots.iter().any(|&slot| slots[slot] == ABSENT);
         !absent && atom.folds.is_empty() && depth_read(self.program.kernel(atom.value)) == Depth::States

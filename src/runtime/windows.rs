@@ -8,6 +8,7 @@ use crate::runtime::certify::ENDLESS;
 use crate::runtime::cold::Cold;
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
+use crate::runtime::hot::Outlook;
 use crate::runtime::observe::End;
 
 /// So many pairs are new in a list, for each agent, that about as much work goes into them as into making the list.
@@ -22,6 +23,8 @@ const SHORTEST: f64 = 1e-6;
 const GROW: f64 = 2.0;
 /// The share of agents that are hot at which a window is long enough.
 const HOT_WANTED: f64 = 0.02;
+/// The share of agents whose steps are kept at which it is.
+const TRACKED_WANTED: f64 = 0.2;
 /// A window in which agents take more steps than this is long enough, too.
 const STEPS_WANTED: f64 = 8.0;
 /// One in which they take fewer is too short, however many are hot.
@@ -55,8 +58,8 @@ impl Engine<'_, '_> {
                 until = until.min(from + length);
                 self.window_end = until;
                 let before = self.stepper.counts.steps;
-                let n_hot = self.open_window(until);
-                length = (length * self.growth(n_hot, before)).max(SHORTEST * self.horizon());
+                let outlook = self.open_window(until);
+                length = (length * self.growth(outlook, before)).max(SHORTEST * self.horizon());
                 self.mind_steps()?;
             }
             if let Some(end) = self.run_until(until)? {
@@ -87,11 +90,13 @@ impl Engine<'_, '_> {
     }
 
     /// By how much the next window is to be longer than this one, in which the cold agents have taken their steps.
-    fn growth(&self, n_hot: usize, steps_before: u64) -> f64 {
+    fn growth(&self, Outlook { n_hot, n_tracked }: Outlook, steps_before: u64) -> f64 {
         let n = self.agents.len() as f64;
         let steps = (self.stepper.counts.steps - steps_before) as f64 / n;
         let hot = n_hot as f64 / n;
-        let wanted = (HOT_WANTED / hot).min(STEPS_WANTED / steps).max(STEPS_LEAST / steps);
+        let tracked = n_tracked as f64 / n;
+        let most = (HOT_WANTED / hot).min(TRACKED_WANTED / tracked).min(STEPS_WANTED / steps);
+        let wanted = most.max(STEPS_LEAST / steps);
         wanted.sqrt().clamp(1.0 / GROW, GROW)
     }
 
