@@ -81,13 +81,6 @@ impl<'p> Cold<'p> {
         (&self.herds[herd as usize], place as usize)
     }
 
-    /// How far a cold agent has come, and its states there.
-    pub fn now(&self, agent: usize) -> (f64, SmallVec<[f64; 8]>) {
-        let (herd, place) = self.find(agent);
-        let (t, states) = herd.now(place);
-        (t, states.into())
-    }
-
     /// Whether the way of a cold agent at `t` is followed in its herd; before, it is on its last segment.
     pub fn knows(&self, agent: usize, t: f64) -> bool {
         let (herd, place) = self.find(agent);

@@ -109,12 +109,20 @@ impl<'p> Agents<'p> {
         }
     }
 
-    /// How far an agent has come, and its states there; `clock` is that of its group.
-    pub fn at_clock(&self, agent: usize, clock: f64) -> (f64, SmallVec<[f64; 8]>) {
+    /// A time not after `now`, the present, from which on an agent is not known to have been written, and its states there;
+    /// `clock` is that of its group. Where it has come to since may yet be cut away.
+    pub fn anchor(&self, agent: usize, clock: f64, now: f64) -> (f64, SmallVec<[f64; 8]>) {
+        let row = &self.agents[agent];
         if self.cold.is_cold(agent) {
-            return self.cold.now(agent);
+            if self.cold.known_from(agent) <= now {
+                return self.cold.known(agent);
+            }
+        } else if clock <= now {
+            return (clock, row.states.as_slice().into());
         }
-        (clock, self.agents[agent].states.as_slice().into())
+        let mut states = SmallVec::from_elem(0.0, row.states.len());
+        row.segment.states(row.segment.start, &mut states);
+        (row.segment.start, states)
     }
 
     /// What is read of an agent that is absent.

@@ -2,7 +2,9 @@
 //!
 //! Rates that are bounded whatever the states are (a speed times a cosine, a saturated input) bound the way of a state
 //! for as long as the agent follows the same flow with the same parameters; a state whose rate is bounded by those has
-//! bounds too. These are kept until the agent's group changes its version. Other states have a box by Picard's operator
+//! bounds too. These are kept until the agent's group changes its version. The way begins at an anchor that is not beyond
+//! the present ([`Agents::anchor`]): what an agent has run ahead may be cut away by an event, and a bound that rests on where
+//! it would have come to would not hold then. Other states have a box by Picard's operator
 //! ([`Enclosures`]), or none.
 
 use smallvec::SmallVec;
@@ -74,14 +76,14 @@ impl Reaches {
 
     /// The box of an agent's states over [from, to], one place of `out` each; WHOLE where there is no bound.
     ///
-    /// All of [from, to] lies at or after the present; where the agent's clock is does not matter.
+    /// All of [from, to] lies at or after `now`, the present; where the agent's clock is does not matter.
     pub fn states(
         &mut self,
         agents: &Agents<'_>,
         groups: &[Group],
         enclosures: &mut Enclosures,
         agent: usize,
-        (from, to): (f64, f64),
+        (now, from, to): (f64, f64, f64),
         out: &mut SmallVec<[Interval; 8]>,
     ) {
         out.clear();
@@ -92,10 +94,10 @@ impl Reaches {
         let number = agents.agents[agent].group;
         let group = &groups[number];
         let first = self.kept[agent].first as usize;
-        let (clock, states) = agents.at_clock(agent, group.clock);
         if group.members.len() == 1 && to <= self.time_end {
-            self.refresh(agents, group, agent, from);
-            let span = Interval { lo: from - clock, hi: to - clock };
+            let (t, states) = agents.anchor(agent, group.clock, now);
+            self.refresh(agents, group, agent, (t, &states));
+            let span = Interval { lo: from - t, hi: to - t };
             for (&x, &rate) in states.iter().zip(&self.rates[first..first + n]) {
                 out.push(if rate.is_whole() { rate } else { self.padded(x, span.mul(rate)) });
             }
@@ -113,31 +115,30 @@ impl Reaches {
         });
     }
 
-    /// Bounds of the rate of one state of an agent from `from` on, whatever its states are; none if there are none.
+    /// Bounds of the rate of one state of an agent from its anchor on, whatever its states are; none if there are none.
     pub fn rate(
         &mut self,
         agents: &Agents<'_>,
         groups: &[Group],
         agent: usize,
         state: usize,
-        from: f64,
+        anchor: (f64, &[f64]),
     ) -> Option<Interval> {
         let group = &groups[agents.agents[agent].group];
         if group.members.len() != 1 {
             return None;
         }
-        self.refresh(agents, group, agent, from);
+        self.refresh(agents, group, agent, anchor);
         let rate = self.rates[self.kept[agent].first as usize + state];
         (!rate.is_whole()).then_some(rate)
     }
 
-    /// Bounds the rates of an agent that is alone, if what is known of them is not valid any more.
-    fn refresh(&mut self, agents: &Agents<'_>, group: &Group, agent: usize, from: f64) {
+    /// Bounds the rates of an agent that is alone from its anchor on, if what is known of them is not valid there.
+    fn refresh(&mut self, agents: &Agents<'_>, group: &Group, agent: usize, anchor: (f64, &[f64])) {
         let Kept { version, since, first, .. } = self.kept[agent];
-        if version != group.version || from < since {
-            let (clock, states) = agents.at_clock(agent, group.clock);
-            let pure = self.bound(agents, agent, clock, &states, from);
-            self.kept[agent] = Kept { version: group.version, first, since: from, pure };
+        if version != group.version || anchor.0 < since {
+            let pure = self.bound(agents, agent, anchor);
+            self.kept[agent] = Kept { version: group.version, first, since: anchor.0, pure };
         }
     }
 
@@ -146,9 +147,9 @@ impl Reaches {
         self.kept[agent].pure
     }
 
-    /// Bounds the rates of an agent that is alone from `since` on, as far as they are bounded whatever its states are. True
+    /// Bounds the rates of an agent that is alone from its anchor on, as far as they are bounded whatever its states are. True
     /// if all are, and by nothing that is known of the states.
-    fn bound(&mut self, agents: &Agents<'_>, number: usize, clock: f64, states: &[f64], since: f64) -> bool {
+    fn bound(&mut self, agents: &Agents<'_>, number: usize, (since, states): (f64, &[f64])) -> bool {
         let first = self.kept[number].first as usize;
         let agent = &agents.agents[number];
         let n = agent.states.len();
@@ -156,7 +157,7 @@ impl Reaches {
         let slots = agents.slots(&flow.frame, &[number]);
         let kernel = agents.program.kernel(flow.rates);
         let time = Interval { lo: since, hi: self.time_end };
-        let span = Interval { lo: since - clock, hi: self.time_end - clock };
+        let span = Interval { lo: 0.0, hi: self.time_end - since };
         let mut states_box: SmallVec<[Interval; 8]> = SmallVec::from_elem(ANY, n);
         self.rates[first..first + n].fill(Interval::WHOLE);
         let mut n_bounded = 0;
