@@ -52,7 +52,8 @@ impl Engine<'_, '_> {
         (from, to): (f64, f64),
     ) -> Option<Interval> {
         let kernel = self.program.kernel(function);
-        let n_states = |&agent: &usize| if agent == ABSENT { 0 } else { self.agents.agents[agent].states.len() };
+        let n_states =
+            |&agent: &usize| if agent == ABSENT { 0 } else { self.agents.agents[agent].states.len() };
         let firsts: SmallVec<[usize; 4]> = slots
             .iter()
             .scan(0, |next, agent| {

@@ -134,12 +134,16 @@ impl Tracks {
 
     /// The number of the step that covers `t`: of two, the first.
     pub fn covering(&self, place: usize, t: f64) -> Option<usize> {
-        self.steps_of(place).find(|&step| t <= self.steps[step].end).filter(|&step| self.steps[step].start <= t)
+        self.steps_of(place)
+            .find(|&step| t <= self.steps[step].end)
+            .filter(|&step| self.steps[step].start <= t)
     }
 
     /// The number of the step that begins at `t`.
     pub fn beginning(&self, place: usize, t: f64) -> Option<usize> {
-        self.steps_of(place).find(|&step| self.steps[step].start >= t).filter(|&step| self.steps[step].start == t)
+        self.steps_of(place)
+            .find(|&step| self.steps[step].start >= t)
+            .filter(|&step| self.steps[step].start == t)
     }
 
     /// A step by its number: its dense output to `segment`, the states at its end to `x`.
