@@ -285,21 +285,28 @@ impl Engine<'_, '_> {
         written.before.insert(agent, (self.present.states(agent).to_vec(), aux));
     }
 
-    /// Ends the past of an agent's group here: its segments are cut, its next step begins afresh.
+    /// Ends the past of an agent's group here: its segments are cut, its next step begins afresh. So it is with all groups
+    /// whose flows read it.
     fn restart(&mut self, agent: usize, written: &mut Written) {
-        if written.restarted.contains(&agent) {
-            return;
-        }
-        self.thaw(agent);
-        let number = self.agents.agents[agent].group;
         let time = self.present.time;
-        let group = &mut self.groups.groups[number];
-        if group.clock > time && group.clock < f64::INFINITY {
-            self.n_cuts += group.members.len() as u64;
+        let mut waiting = vec![agent];
+        while let Some(agent) = waiting.pop() {
+            if written.restarted.contains(&agent) {
+                continue;
+            }
+            self.thaw(agent);
+            let number = self.agents.agents[agent].group;
+            let group = &mut self.groups.groups[number];
+            if group.clock > time && group.clock < f64::INFINITY {
+                self.n_cuts += group.members.len() as u64;
+            }
+            cut(&mut self.agents, group, time);
+            for &member in &group.members {
+                written.restarted.insert(member);
+                waiting.extend(self.agents.followers(member));
+            }
+            self.queue_clock(number);
         }
-        cut(&mut self.agents, group, time);
-        written.restarted.extend(group.members.iter().copied());
-        self.queue_clock(number);
     }
 
     /// Restarts the agents whose flow reads an auxiliary column of `agent`.
@@ -316,44 +323,33 @@ impl Engine<'_, '_> {
 
     /// Divides the groups of agents that changed their mode anew (rule 13).
     fn regroup(&mut self, written: &mut Written) {
-        if written.moves.is_empty() {
+        let mut changed: Vec<usize> = written.moves.iter().map(|change| change.agent).collect();
+        changed.sort_unstable();
+        changed.dedup();
+        let is_free = |&agent: &usize| {
+            let group = &self.groups.groups[self.agents.agents[agent].group];
+            group.members.len() == 1 && group.leaders.is_empty() && self.agents.couples(agent).is_empty()
+        };
+        if changed.iter().all(is_free) {
             return;
         }
-        let mut concerned: Vec<usize> = Vec::new();
-        for change in &written.moves {
-            let mut with = vec![change.agent];
-            with.extend(crate::runtime::groups::couples(&self.agents, change.agent));
-            for agent in with {
-                let group = self.agents.agents[agent].group;
-                if !concerned.contains(&group) {
-                    concerned.push(group);
-                }
-            }
-        }
-        let alone = |group: &usize| self.groups.groups[*group].members.len() == 1;
-        if concerned.iter().all(alone) && concerned.len() == written.moves.len() {
-            let coupled = written
-                .moves
-                .iter()
-                .any(|change| !crate::runtime::groups::couples(&self.agents, change.agent).is_empty());
-            if !coupled {
-                return;
-            }
-        }
-        let mut members: Vec<usize> = Vec::new();
-        for &group in &concerned {
-            members.extend_from_slice(&self.groups.groups[group].members);
-        }
+        let members = self.groups.closed(&self.agents, changed);
         for &agent in &members {
             self.restart(agent, written);
+            for leader in self.agents.couples(agent) {
+                self.thaw(leader);
+            }
         }
         let time = self.present.time;
         let mut steps: FxHashMap<usize, Option<f64>> = FxHashMap::default();
         for &agent in &members {
             steps.insert(agent, self.groups.groups[self.agents.agents[agent].group].integration.h);
         }
-        for &group in &concerned {
-            self.groups.dissolve(group);
+        for &agent in &members {
+            let group = self.agents.agents[agent].group;
+            if !self.groups.groups[group].members.is_empty() {
+                self.groups.dissolve(group);
+            }
         }
         let made = self
             .groups

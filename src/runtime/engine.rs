@@ -13,7 +13,7 @@ use crate::runtime::comparisons;
 use crate::runtime::detect::CurveRows;
 use crate::runtime::enclose::Enclosures;
 use crate::runtime::failure::{Failure, Place, Reason};
-use crate::runtime::groups::Groups;
+use crate::runtime::groups::{Coupling, Groups};
 use crate::runtime::guards::{Guards, Listing, Origin, TooManyGuards};
 use crate::runtime::limits::Limits;
 use crate::runtime::neighbours::Neighbours;
@@ -154,7 +154,7 @@ impl<'p, 'o> Engine<'p, 'o> {
     /// A run that has not begun.
     pub fn new(
         program: &'p Program,
-        form: Form,
+        (form, coupling): (Form, Coupling),
         limits: &Limits,
         interrupt: &'o AtomicBool,
         observer: &'o mut dyn Observer,
@@ -185,7 +185,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             has_thawed: false,
             recorder: Recorder::new(program, time_end),
             repetitions: Repetitions::new(limits),
-            groups: Groups::default(),
+            groups: Groups::new(coupling),
             points: Vec::new(),
             registers: Vec::new(),
             queues: Queues::default(),

@@ -106,6 +106,7 @@ impl Engine<'_, '_> {
         let group = &mut self.groups.groups[row.group];
         if self.stepper.is_stiff(agent, row.mode)
             || group.members.len() != 1
+            || !self.agents.followers(agent).is_empty()
             || !self.agents.cold.may_be(row.ty, row.mode)
             || group.clock == f64::INFINITY
         {

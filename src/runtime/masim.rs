@@ -138,10 +138,15 @@ impl Engine<'_, '_> {
     /// Advances the group that lags most.
     pub fn advance_laggard(&mut self, cover: f64) -> Result<(), Failure> {
         let Some(due) = self.queues.clocks.pop() else { return Ok(()) };
-        let number = due.number as usize;
-        if self.groups.groups[number].clock != due.time {
+        let lagging = due.number as usize;
+        if self.groups.groups[lagging].clock != due.time {
             return Ok(());
         }
+        let number = self.first_to_move(lagging);
+        if number != lagging {
+            self.queue_clock(lagging);
+        }
+        self.run_leaders_ahead(number);
         if self.recorder.wants_steps() {
             for k in 0..self.groups.groups[number].members.len() {
                 let agent = self.groups.groups[number].members[k];

@@ -20,7 +20,7 @@
 //! | 8 claims | a false invariant ends the run, a false assert is reported | `instant` |
 //! | 11 time | `after` and `every` count from entry, as products | `arm`, `gather` |
 //! | 12 end | `until`, `stop`, errors; the state of all at that time | `masim`, `repetition` |
-//! | 13 coupling | who reads another's states in its flow steps with it | `groups` |
+//! | 13 coupling | who read each other's states in their flows step together, a follower after its leader | `groups`, `leaders` |
 //! | 14 reads across agents | a write wakes the guards that read it, and no others | `arm` |
 //! | 15 kinks | a step never spans a surface at which a branch of the flow changes | `advance` |
 //! | 16 output | recording changes nothing | `record` |
@@ -43,6 +43,7 @@ mod leap;
 mod tracks;
 mod herd;
 mod cold;
+mod ahead;
 mod population;
 mod present;
 mod groups;
@@ -65,6 +66,7 @@ mod repetition;
 mod record;
 mod neighbours;
 mod engine;
+mod leaders;
 mod point;
 mod act;
 mod arm;
@@ -91,6 +93,7 @@ use clocks::Clocks;
 pub use clocks::takes as published_take;
 use engine::Engine;
 use failure::Failure;
+use groups::Coupling;
 pub use limits::Limits;
 use observe::{End, Observer, Outcome, Stats};
 pub use paper::{Algorithm, Form};
@@ -116,7 +119,8 @@ pub fn simulate_by(
     interrupt: &AtomicBool,
     observer: &mut dyn Observer,
 ) -> Outcome {
-    let mut engine = match Engine::new(program, algorithm.form(), limits, interrupt, observer) {
+    let forms = (algorithm.form(), coupling(algorithm));
+    let mut engine = match Engine::new(program, forms, limits, interrupt, observer) {
         Ok(engine) => engine,
         Err(failure) => return stillborn(failure),
     };
@@ -142,6 +146,15 @@ pub fn simulate_by(
     };
     let end = last_words(&mut clocks.engine, end);
     clocks.outcome(end)
+}
+
+/// Who shares a clock.
+fn coupling(algorithm: Algorithm) -> Coupling {
+    match algorithm {
+        Algorithm::Masim(_) => Coupling::Mutual,
+        Algorithm::Masim2004(_) => Coupling::Connected,
+        Algorithm::Sasim2004(_) => Coupling::Together,
+    }
 }
 
 /// Tells the observer the last state of every agent.

@@ -6,6 +6,7 @@
 use smallvec::SmallVec;
 
 use crate::codegen::program::{Flow, Frame, Layout, ModeSystem, Program, Slot};
+use crate::runtime::ahead::Ahead;
 use crate::runtime::cold::Cold;
 use crate::runtime::solve::segment::Segment;
 
@@ -32,6 +33,8 @@ pub struct Agent {
     pub aux: Vec<f64>,
     /// Its trajectory over its last step.
     pub segment: Segment,
+    /// Steps beyond that, for those whose flows read it.
+    pub ahead: Ahead,
 }
 
 /// All agents with their links.
@@ -52,6 +55,8 @@ pub struct Agents<'p> {
     absent: Vec<f64>,
     /// For each type and mode, the auxiliary columns that the flow depends on, by itself or through its kinks.
     flow_inputs: Vec<Vec<Vec<(usize, usize)>>>,
+    /// For each type, whether any flow reads states of another agent of it.
+    is_followed: Vec<bool>,
 }
 
 impl<'p> Agents<'p> {
@@ -76,7 +81,8 @@ impl<'p> Agents<'p> {
             let rank = of_type[ty].len();
             of_type[ty].push(number);
             let segment = Segment::at(0.0, &instance.states);
-            agents.push(Agent { ty, rank, mode, group: 0, states: instance.states.clone(), aux, segment });
+            let (states, ahead) = (instance.states.clone(), Ahead::default());
+            agents.push(Agent { ty, rank, mode, group: 0, states, aux, segment, ahead });
         }
         let mut linked_from = vec![Vec::new(); agents.len()];
         for (number, instance) in program.population.agents.iter().enumerate() {
@@ -91,6 +97,7 @@ impl<'p> Agents<'p> {
             linked_from,
             chain_max: longest_chain(program),
             flow_inputs: flow_inputs(program),
+            is_followed: is_followed(program),
             cold: Cold::default(),
             absent: vec![f64::NAN; row_width(program)],
         }
@@ -103,10 +110,70 @@ impl<'p> Agents<'p> {
             return self.cold.states_at(number, t, states);
         }
         if agent.segment.end == t {
-            states.copy_from_slice(&agent.states);
-        } else {
-            agent.segment.states(t, states);
+            return states.copy_from_slice(&agent.states);
         }
+        let beyond = if agent.segment.end < t { agent.ahead.covering(t) } else { None };
+        beyond.map_or(&agent.segment, |way| &way.segment).states(t, states);
+    }
+
+    /// The rates of an agent that is not cold at `t`, by its dense output.
+    pub fn rates_at(&self, number: usize, t: f64, rates: &mut [f64]) {
+        let agent = &self.agents[number];
+        let beyond = if agent.segment.end < t { agent.ahead.covering(t) } else { None };
+        let segment = beyond.map_or(&agent.segment, |way| &way.segment);
+        let (mut x, mut ddx) = (rates.to_vec(), rates.to_vec());
+        segment.jet(t, &mut x, rates, &mut ddx);
+    }
+
+    /// Up to when the way of an agent that is not cold is known, s.
+    pub fn known_until(&self, agent: usize) -> f64 {
+        let agent = &self.agents[agent];
+        agent.ahead.last().map_or(agent.segment.end, |way| way.segment.end)
+    }
+
+    /// Where the step of an agent ends that leads on from `t`, s.
+    pub fn way_until(&self, agent: usize, t: f64) -> f64 {
+        let agent = &self.agents[agent];
+        let ways = std::iter::once(agent.segment.end).chain(agent.ahead.ends());
+        ways.into_iter().find(|&end| t < end).unwrap_or(t)
+    }
+
+    /// Which of the steps ahead of an agent leads on from `t`; none if it is its last step.
+    pub fn way_from(&self, agent: usize, t: f64) -> Option<usize> {
+        let agent = &self.agents[agent];
+        if t < agent.segment.end { None } else { agent.ahead.leading_from(t) }
+    }
+
+    /// Exchanges the last segment of an agent for that of a step ahead.
+    pub fn exchange(&mut self, agent: usize, way: Option<usize>) {
+        let Agent { segment, ahead, .. } = &mut self.agents[agent];
+        if let Some(way) = way.and_then(|way| ahead.get(way)) {
+            std::mem::swap(segment, &mut way.segment);
+        }
+    }
+
+    /// The agents whose states the active flow of an agent reads, without itself.
+    pub fn couples(&self, agent: usize) -> Vec<usize> {
+        let flow = self.flow(agent);
+        if flow.couples.is_empty() {
+            return Vec::new();
+        }
+        let slots = self.slots(&flow.frame, &[agent]);
+        flow.couples
+            .iter()
+            .map(|&slot| slots[slot])
+            .filter(|&other| other != ABSENT && other != agent)
+            .collect()
+    }
+
+    /// The agents whose active flows read states of an agent, without itself.
+    pub fn followers(&self, agent: usize) -> Vec<usize> {
+        if !self.is_followed[self.agents[agent].ty] {
+            return Vec::new();
+        }
+        let mut followers = self.readers(agent);
+        followers.retain(|&reader| reader != agent && self.couples(reader).contains(&agent));
+        followers
     }
 
     /// A time not after `now`, the present, from which on an agent is not known to have been written, and its states there;
@@ -228,6 +295,17 @@ fn flow_inputs(program: &Program) -> Vec<Vec<Vec<(usize, usize)>>> {
     };
     let of_mode = |mode: &ModeSystem| mode.flow.as_ref().map_or_else(Vec::new, of_flow);
     program.types.iter().map(|ty| ty.modes.iter().map(of_mode).collect()).collect()
+}
+
+/// For each type, whether any flow reads states of another agent of it.
+fn is_followed(program: &Program) -> Vec<bool> {
+    let mut is_followed = vec![false; program.types.len()];
+    for mode in program.types.iter().flat_map(|ty| &ty.modes) {
+        for flow in mode.flow.iter() {
+            flow.couples.iter().for_each(|&slot| is_followed[flow.frame.slots[slot].ty()] = true);
+        }
+    }
+    is_followed
 }
 
 /// The longest chain of links in any frame of the program.

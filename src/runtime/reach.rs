@@ -94,7 +94,7 @@ impl Reaches {
         let number = agents.agents[agent].group;
         let group = &groups[number];
         let first = self.kept[agent].first as usize;
-        if group.members.len() == 1 && to <= self.time_end {
+        if is_alone(group) && to <= self.time_end {
             let (t, states) = agents.anchor(agent, group.clock, now);
             self.refresh(agents, group, agent, (t, &states));
             let span = Interval { lo: from - t, hi: to - t };
@@ -125,7 +125,7 @@ impl Reaches {
         anchor: (f64, &[f64]),
     ) -> Option<Interval> {
         let group = &groups[agents.agents[agent].group];
-        if group.members.len() != 1 {
+        if !is_alone(group) {
             return None;
         }
         self.refresh(agents, group, agent, anchor);
@@ -199,4 +199,9 @@ impl Reaches {
     fn padded(&self, x: f64, way: Interval) -> Interval {
         self.accuracy.padded(Interval { lo: x, hi: x }.add(way))
     }
+}
+
+/// Whether a group is one agent whose flow reads no other.
+fn is_alone(group: &Group) -> bool {
+    group.members.len() == 1 && group.leaders.is_empty()
 }

@@ -40,6 +40,7 @@ mod differential;
 mod draws;
 mod units;
 mod robust;
+mod chains;
 mod windows;
 mod aggregates;
 mod limits;
