@@ -129,8 +129,7 @@ fn rule_13_a_follower_does_not_step_over_a_kink_of_its_leader_nor_of_its_own() {
 #[test]
 fn rule_13_who_follows_in_a_circle_steps_together_only_as_long_as_it_does() {
     // Two that approach each other while they are close in time, then the first goes its own way; a third follows always.
-    let run = run("agent Car(i: int) { state x = i
-           link lead: Car
+    let run = run("agent Car(i: int, lead: Car) { state x = i
            initial mode Both { flow { x' = lead.x - x }  after 1 -> Alone }
            mode Alone { flow { x' = if i == 0 then 1 else lead.x - x } } }
          agent Tail(lead: Car) { state z = 0  flow { z' = lead.x - z } }
@@ -160,8 +159,9 @@ fn rule_13_a_long_chain_costs_a_car_no_more_than_twice_what_a_short_one_does() {
             "agent Car(k: int) {{ state x = -10*k, v = 20
                link lead: Car
                let gap = if lead then lead.x - x else 10
+               let dv = if lead then lead.v - v else 0
                flow {{ x' = v
-                      v' = if k == 0 then 0.5*sin(0.3*time) else 0.5*(gap - 10) + 0.8*(lead.v - v) }}
+                      v' = if k == 0 then 0.5*sin(0.3*time) else 0.5*(gap - 10) + 0.8*dv }}
                event_of_one: every 1 when k == 0 {{ v := v + 0.1*sin(17*time) }} }}
              system {{ a = Car[{n}](k = index, lead = if index > 0 then a[index - 1] else none) }}
              run {{ until 5 }}"
