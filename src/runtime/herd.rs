@@ -43,7 +43,7 @@ pub struct Advanced {
 }
 
 /// An agent that takes so many steps in a window is left to who can choose another method.
-const STEPS_MAX: u32 = 1000;
+const STEPS_MAX: u32 = 200;
 /// Up to this many lanes are cheaper one by one.
 const FEW: usize = 3;
 
