@@ -44,6 +44,7 @@ mod tracks;
 mod herd;
 mod cold;
 mod ahead;
+mod route;
 mod population;
 mod present;
 mod groups;
