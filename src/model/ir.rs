@@ -3,7 +3,7 @@
 //! Flat data. Expressions lie in one arena, operands before their users. What follows a `param` or a top-level `let`
 //! without agents in it is already a number. Values are SI. Modes form a tree whose root (number 0) is the agent itself.
 
-use crate::base::{Arena, Idx, Span};
+use crate::base::{Arena, FileId, Idx, Span};
 use crate::math::{Op, Scale};
 pub use crate::model::applied::Operands;
 pub use crate::model::integrator::Integrator;
@@ -43,6 +43,8 @@ pub struct Model {
     pub run: Run,
     /// What it may ask for.
     pub limits: Limits,
+    /// The files of the text in the order of what they declare: imported ones before those that import them.
+    pub files: Vec<FileId>,
 }
 
 /// A top-level `param`.
@@ -254,6 +256,64 @@ pub struct AgentType {
 }
 
 impl AgentType {
+    /// Whether its modes stand in regions.
+    pub fn has_regions(&self) -> bool {
+        self.modes[ModeId::new(0)].children.first().is_some_and(|&child| self.modes[child].is_region)
+    }
+
+    /// The regions; the root is the only one of an agent without regions.
+    pub fn regions(&self) -> Vec<ModeId> {
+        let root = ModeId::new(0);
+        if self.has_regions() { self.modes[root].children.clone() } else { vec![root] }
+    }
+
+    /// The leaves of each region, in order. An agent is in one of each at once.
+    pub fn leaves(&self) -> Vec<Vec<ModeId>> {
+        let leaves = |region: ModeId| {
+            let all = self.modes.iter_enumerated().filter(|(_, mode)| mode.children.is_empty());
+            all.map(|(id, _)| id).filter(|&id| self.is_inside(id, region)).collect()
+        };
+        self.regions().into_iter().map(leaves).collect()
+    }
+
+    /// How many combinations of leaves of all regions there are.
+    pub fn n_configurations(&self) -> usize {
+        self.leaves().iter().fold(1, |n, leaves| n.saturating_mul(leaves.len()))
+    }
+
+    /// A combination by its number, the leaf of the last region changing fastest.
+    pub fn configuration(leaves: &[Vec<ModeId>], mut number: usize) -> Vec<ModeId> {
+        let mut chosen: Vec<ModeId> = Vec::with_capacity(leaves.len());
+        for leaves in leaves.iter().rev() {
+            chosen.push(leaves[number % leaves.len()]);
+            number /= leaves.len();
+        }
+        chosen.reverse();
+        chosen
+    }
+
+    /// All modes that are active with these leaves: the root first, each before those inside it, otherwise in order of declaration.
+    pub fn active(&self, leaves: &[ModeId]) -> Vec<ModeId> {
+        let around = |&leaf: &ModeId| std::iter::successors(Some(leaf), |&mode| self.modes[mode].parent);
+        let mut active: Vec<ModeId> = leaves.iter().flat_map(around).collect();
+        active.sort_unstable_by_key(|&mode| (self.modes[mode].depth, mode));
+        active.dedup();
+        active
+    }
+
+    /// How logs call a combination of leaves: `Drive.Cruise`, `Motion.Drive|Lamp.Off`.
+    pub fn path(&self, leaves: &[ModeId]) -> String {
+        leaves.iter().map(|&leaf| self.modes[leaf].path.as_str()).collect::<Vec<_>>().join("|")
+    }
+
+    /// The region that a mode is in; none for the root of an agent with regions.
+    pub fn region_of(&self, mode: ModeId) -> Option<ModeId> {
+        let root = (!self.has_regions()).then_some(ModeId::new(0));
+        std::iter::successors(Some(mode), |&mode| self.modes[mode].parent)
+            .find(|&mode| self.modes[mode].is_region)
+            .or(root)
+    }
+
     /// Whether a mode is another one, or inside it.
     pub fn is_inside(&self, mode: ModeId, other: ModeId) -> bool {
         std::iter::successors(Some(mode), |&mode| self.modes[mode].parent).any(|around| around == other)
@@ -344,8 +404,10 @@ pub struct Mode {
     pub depth: usize,
     /// Its submodes in order; empty for a leaf.
     pub children: Vec<ModeId>,
-    /// The child entered by default; none for a leaf.
+    /// The child entered by default; none for a leaf, and where the children are regions.
     pub initial: Option<ModeId>,
+    /// Whether it is a region: active as long as the agent is, beside the other regions.
+    pub is_region: bool,
     /// State number, its rate, where the equation stands; without those of enclosing modes.
     pub flow: Vec<(usize, ExprId, Span)>,
     /// Domain of the flow.
@@ -532,7 +594,7 @@ pub struct Block {
 pub struct Instance {
     /// Its type.
     pub ty: TypeId,
-    /// The leaf mode it starts in.
+    /// The mode it starts in: a leaf; of an agent with regions one of one region, or the root where the text names none.
     pub mode: ModeId,
     /// Values of the parameters, SI.
     pub params: Vec<f64>,

@@ -42,4 +42,7 @@ mod units;
 mod robust;
 mod windows;
 mod aggregates;
+mod imports;
+mod tables;
+mod hierarchies;
 mod limits;
