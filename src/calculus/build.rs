@@ -12,7 +12,7 @@ use crate::calculus::frame::{AgentRef, Env, EnvId, Scope, Value};
 use crate::calculus::graph::{Node, NodeId};
 use crate::calculus::system::{Layout, Slot};
 use crate::math::Op;
-use crate::model::ir::{ExprId, ExprKind, FunctionId, Mode, ModeId, Type, TypeId};
+use crate::model::ir::{ExprId, ExprKind, FunctionId, ModeId, Type, TypeId};
 
 /// Why an expression is not lowered.
 #[derive(Debug)]

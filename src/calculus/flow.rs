@@ -57,7 +57,10 @@ fn equations(draft: &Draft, ty: TypeId, active: &[usize]) -> Vec<(ExprId, Span)>
             found[state] = Some((rate, span));
         }
     }
-    found.into_iter().map(|equation| equation.expect("every state has one equation in every configuration")).collect()
+    found
+        .into_iter()
+        .map(|equation| equation.expect("every state has one equation in every configuration"))
+        .collect()
 }
 
 /// The entries of a row of df/dx that are not always 0.

@@ -299,11 +299,7 @@ pub(super) struct Context<'a> {
 
 impl<'a> Context<'a> {
     /// A context without names.
-    pub fn new(
-        sources: &'a mut SourceMap,
-        files: &'a mut dyn Files,
-        settings: &super::Settings,
-    ) -> Self {
+    pub fn new(sources: &'a mut SourceMap, files: &'a mut dyn Files, settings: &super::Settings) -> Self {
         Self {
             sources,
             files,

@@ -8,7 +8,9 @@
 mod integrator;
 pub mod limits;
 mod applied;
+mod collective;
 pub mod ir;
+mod configuration;
 mod suggest;
 mod dimension;
 mod measure;

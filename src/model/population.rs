@@ -26,11 +26,7 @@ struct Data {
 }
 
 /// Makes the population.
-pub(super) fn populate<'a>(
-    context: &mut Context<'a>,
-    items: &[&'a Item],
-    initials: &[Initials],
-) {
+pub(super) fn populate<'a>(context: &mut Context<'a>, items: &[&'a Item], initials: &[Initials]) {
     let instances = items.iter().filter_map(|item| match item {
         Item::System(system) => Some(&system.instances),
         _ => None,
@@ -82,11 +78,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    fn plan(
-        &mut self,
-        item: &'a ast::Instance,
-        initials: &[Initials],
-    ) -> Option<Plan<'a>> {
+    fn plan(&mut self, item: &'a ast::Instance, initials: &[Initials]) -> Option<Plan<'a>> {
         let constructor = &item.constructor;
         let ty = self.agent_named(&constructor.agent)?;
         let mode = self.start_mode(ty, constructor.start.as_ref());
@@ -209,10 +201,7 @@ impl<'a> Context<'a> {
     }
 
     /// The file behind `from csv(...)`; none, and a diagnostic, if it cannot be used.
-    fn open(
-        &mut self,
-        source: &'a ast::Expr,
-    ) -> Option<Data> {
+    fn open(&mut self, source: &'a ast::Expr) -> Option<Data> {
         let path = match &source.kind {
             ast::ExprKind::Call { callee, args } => match (&callee.kind, args.as_slice()) {
                 (ast::ExprKind::Name(name), [path]) if name == "csv" => Some(path),

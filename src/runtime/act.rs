@@ -219,7 +219,9 @@ impl Engine<'_, '_> {
             let mut effect = Effect::default();
             for (&(agent, entered), depths) in entries.iter().zip(&levels) {
                 let modes = &types[self.agents.agents[agent].ty].modes;
-                for node in entered.iter().map(|&mode| &modes[mode]).filter(|node| node.depth == depths.start + level) {
+                for node in
+                    entered.iter().map(|&mode| &modes[mode]).filter(|node| node.depth == depths.start + level)
+                {
                     let slots = self.agents.slots(&node.entry.frame, &[agent]);
                     self.run_list(&node.entry, &slots, &[agent], &node.path, &mut effect)?;
                 }

@@ -111,7 +111,8 @@ pub fn first(ty: &AgentSystem, mode: usize) -> usize {
         std::iter::successors(Some(named), |&mode| ty.modes[mode].initial).last().unwrap_or(named)
     };
     let offsets: usize = ty.regions.iter().map(leaf).map(|leaf| ty.modes[leaf].offset).sum();
-    let before = if ty.regions == [0] { 0 } else { ty.modes.iter().take_while(|mode| mode.active.is_empty()).count() };
+    let before =
+        if ty.regions == [0] { 0 } else { ty.modes.iter().take_while(|mode| mode.active.is_empty()).count() };
     before + offsets
 }
 

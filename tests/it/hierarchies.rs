@@ -71,7 +71,7 @@ impl Tree {
         };
         let y_here = !has_y && depth > 0 && (n_children == 0 || dice.percent(40));
         let y_rate = y_here.then(|| dice.signed(0.3, 1.5));
-        let acts = [dice.percent(50), dice.percent(50)];
+        let acts = [dice.percent(50), dice.percent(50)].map(|acts| acts && depth > 0);
         let x_rate = dice.signed(0.5, 2.0);
         let transitions = Vec::new();
         let initial = dice.below(n_children.max(1));
@@ -108,7 +108,7 @@ impl Tree {
             number: self.n_steps,
             after,
             guard,
-            priority: dice.pick(&["", "", "", " priority 1", " priority -1"]),
+            priority: *dice.pick::<&str>(&["", "", "", " priority 1", " priority -1"]),
             target,
             resets: [dice.signed(0.0, 0.5), dice.signed(0.0, 0.5)],
             writes_seq: dice.percent(30),
@@ -124,20 +124,24 @@ impl Tree {
     }
 
     fn path(&self, node: usize) -> String {
-        let mut names: Vec<String> = self.around(node).iter().filter(|&&id| id != 0).map(|id| format!("M{id}")).collect();
+        let mut names: Vec<String> =
+            self.around(node).iter().filter(|&&id| id != 0).map(|id| format!("M{id}")).collect();
         names.reverse();
         names.join(".")
     }
 
     fn leaves_in(&self, node: usize) -> Vec<usize> {
         let all = 0..self.nodes.len();
-        all.filter(|&leaf| self.nodes[leaf].children.is_empty() && self.around(leaf).contains(&node)).collect()
+        all.filter(|&leaf| self.nodes[leaf].children.is_empty() && self.around(leaf).contains(&node))
+            .collect()
     }
 
     /// A node and what is entered inside it by default.
     fn down(&self, node: usize) -> Vec<usize> {
         let mut list = vec![node];
-        while let Some(&child) = self.nodes[list[list.len() - 1]].children.get(self.nodes[list[list.len() - 1]].initial) {
+        while let Some(&child) =
+            self.nodes[list[list.len() - 1]].children.get(self.nodes[list[list.len() - 1]].initial)
+        {
             list.push(child);
         }
         list
@@ -145,8 +149,8 @@ impl Tree {
 }
 
 /// What actions write, as expressions of what the variables were.
-fn exited(node: usize) -> [String; 1] {
-    [format!("mod(5*seq + {node}, 101)")]
+fn exited(node: usize) -> String {
+    format!("mod(5*seq + {node}, 101)")
 }
 
 fn entered(node: usize, seq: &str, x: &str) -> [String; 2] {
@@ -194,7 +198,7 @@ impl Tree {
             let _ = writeln!(text, "flow {{ x' = {} }}", node.x_rate);
         }
         if node.acts[0] {
-            let _ = writeln!(text, "exit {{ seq := {} }}", exited(id)[0]);
+            let _ = writeln!(text, "exit {{ seq := {} }}", exited(id));
         }
         if node.acts[1] {
             let [seq, x] = entered(id, "seq", "x");
@@ -291,19 +295,30 @@ impl Tree {
     }
 
     /// Everything from leaving the leaf to being in the next one, as one list that reads the state before.
-    fn flat_actions(&self, leaf: usize, source: usize, step: &Step, inside: Option<&[usize]>) -> (String, String) {
+    fn flat_actions(
+        &self,
+        leaf: usize,
+        source: usize,
+        step: &Step,
+        inside: Option<&[usize]>,
+    ) -> (String, String) {
         let [mut x, y] = step.resets.clone();
         let mut seq = if step.writes_seq { own(step) } else { "seq".to_string() };
-        let Some(inside) = inside else { return (String::new(), format!("x := {x}  y := {y}  seq := {seq}")) };
+        let Some(inside) = inside else {
+            return (String::new(), format!("x := {x}  y := {y}  seq := {seq}"));
+        };
         let goal = inside[0];
         let stays = self.around(goal).into_iter().skip(1);
         let outside: Vec<usize> = self.around(source).into_iter().skip(1).collect();
         let scope = stays.into_iter().find(|node| outside.contains(node)).unwrap();
         let left: Vec<usize> = self.around(leaf).into_iter().take_while(|&node| node != scope).collect();
-        if !step.writes_seq && let Some(&node) = left.iter().rev().find(|&&node| self.nodes[node].acts[0]) {
-            seq = exited(node)[0].clone();
+        if !step.writes_seq
+            && let Some(&node) = left.iter().rev().find(|&&node| self.nodes[node].acts[0])
+        {
+            seq = exited(node);
         }
-        let mut enters: Vec<usize> = self.around(goal).into_iter().skip(1).take_while(|&node| node != scope).collect();
+        let mut enters: Vec<usize> =
+            self.around(goal).into_iter().skip(1).take_while(|&node| node != scope).collect();
         enters.reverse();
         enters.extend(inside);
         let mut notes = String::new();
@@ -393,7 +408,10 @@ fn regions_do_what_agents_of_their_own_do() {
         let halves = [half("p", "q", dice), half("q", "p", dice)];
         let variables = |own: &str| format!("state x{own} = 0  discrete r{own} = 0");
         let [p, q] = &halves;
-        let (p_in, q_in) = (p.replace("OTHER.", "").replace("OTHER is q", "self is Q.q"), q.replace("OTHER.", "").replace("OTHER is p", "self is P.p"));
+        let (p_in, q_in) = (
+            p.replace("OTHER.", "").replace("OTHER is q", "self is Q.q"),
+            q.replace("OTHER.", "").replace("OTHER is p", "self is P.p"),
+        );
         let one = format!(
             "agent A {{ {} {}\nregion P {{ {p_in} }}\nregion Q {{ {q_in} }} }}\nsystem {{ a = A() }}  run {{ until 10 }}",
             variables("p"),
@@ -406,7 +424,8 @@ fn regions_do_what_agents_of_their_own_do() {
             variables("q"),
             q.replace("OTHER", "o")
         );
-        let by = |text: &str, form| Case::new(text).tolerance(1e-9).algorithm(Algorithm::Masim(form)).run_any();
+        let by =
+            |text: &str, form| Case::new(text).tolerance(1e-9).algorithm(Algorithm::Masim(form)).run_any();
         let [ours, theirs] = [by(&one, Form::Fast), by(&two, Form::Plain)];
         if matches!(ours.end, Ended::Error(_)) || matches!(theirs.end, Ended::Error(_)) {
             continue;

@@ -98,9 +98,13 @@ fn circles_name_every_file() {
 
 #[test]
 fn a_missing_file_is_told_where_it_is_imported() {
-    let case = Case::new("import \"lib/a.hy\"  system { a = Other() }").file("lib/a.hy", "import \"none.hy\"");
+    let case =
+        Case::new("import \"lib/a.hy\"  system { a = Other() }").file("lib/a.hy", "import \"none.hy\"");
     let text = told(&case);
-    assert!(text.contains("HY0215") && text.contains("cannot import `lib/none.hy`: there is no such file"), "{text}");
+    assert!(
+        text.contains("HY0215") && text.contains("cannot import `lib/none.hy`: there is no such file"),
+        "{text}"
+    );
     assert!(text.contains("lib/a.hy:1:8"), "{text}");
     // what may be in the missing file is not said to be missing
     assert!(!text.contains("HY0202") && !text.contains("HY0201"), "{text}");
@@ -110,7 +114,10 @@ fn a_missing_file_is_told_where_it_is_imported() {
 fn a_clash_shows_both_places() {
     let case = Case::new("import \"walker.hy\"\nparam pace = 3").file("walker.hy", WALKER);
     let text = told(&case);
-    assert!(text.contains("HY0205") && text.contains("walker.hy:1:7") && text.contains("test.hy:2:7"), "{text}");
+    assert!(
+        text.contains("HY0205") && text.contains("walker.hy:1:7") && text.contains("test.hy:2:7"),
+        "{text}"
+    );
     let case = Case::new("import \"a.hy\"  run { until 1 }").file("a.hy", "run { until 2 }");
     let text = told(&case);
     assert!(text.contains("HY0211") && text.contains("a.hy:1:1"), "{text}");
@@ -129,7 +136,8 @@ fn errors_of_an_imported_file_stand_in_it() {
 #[test]
 fn what_is_not_used_of_an_imported_file_is_no_warning() {
     let warnings = |text: &str| {
-        let case = Case::new(text).file("walker.hy", &format!("{WALKER}\nfn unused(a: real) = a\nparam idle = 3"));
+        let case =
+            Case::new(text).file("walker.hy", &format!("{WALKER}\nfn unused(a: real) = a\nparam idle = 3"));
         let mut sources = hyc::base::SourceMap::default();
         let ast = case.ast(&mut sources).unwrap();
         let checked = case.check(&ast, &mut sources);

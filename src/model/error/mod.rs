@@ -8,8 +8,8 @@ pub(super) mod data;
 pub(super) mod imports;
 
 pub(super) use data::{FileError, LimitError, OverrideError, RunError, SystemError, TableError, ValueError};
-pub(super) use imports::ImportError;
 pub(super) use dimensions::{DimensionError, Evidence, Side};
+pub(super) use imports::ImportError;
 pub(super) use modes::{ActionError, ModeError};
 pub(super) use names::NameError;
 pub(super) use types::TypeError;

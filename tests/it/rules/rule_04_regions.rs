@@ -1,6 +1,8 @@
 //! Regions: rules 1, 2, 4, 8 and 11 where modes are active beside each other. Every log is worked out by hand.
 
-use crate::harness::{Case, all_near, near, refused, simulate, simulate_by_both_forms, simulate_error, words};
+use crate::harness::{
+    Case, all_near, near, refused, simulate, simulate_by_both_forms, simulate_error, words,
+};
 
 #[test]
 fn rule_01_flows_of_all_regions_hold_together() {
@@ -75,10 +77,7 @@ fn rule_04_each_region_has_its_turn_in_one_micro_step() {
            region Q { initial mode Q1 { after 1 -> Q2 { q := p + 5 } }  mode Q2 { } } }
          system { a = A() }  run { until 2.5 }",
     );
-    assert_eq!(
-        run.log(),
-        ["0 A.P1->P2 a P.P1->P.P2", "0 A.Q1->Q2 a Q.Q1->Q.Q2", "0 A.P2->P1 a P.P2->P.P1"]
-    );
+    assert_eq!(run.log(), ["0 A.P1->P2 a P.P1->P.P2", "0 A.Q1->Q2 a Q.Q1->Q.Q2", "0 A.P2->P1 a P.P2->P.P1"]);
     // both read the state before: p = 0 + 1, q = 0 + 5; then p = 5 + 10
     assert_eq!([run.value("a.p"), run.value("a.q")], [15.0, 5.0]);
     assert_eq!(run.mode("a"), "P.P1|Q.Q2");
@@ -231,16 +230,16 @@ fn rule_04_is_names_the_mode_of_a_region() {
          agent B { link a: A  discrete n = 0
            both: when a is P.P2 and a is Q.Next { n := n + 1 }
            gone: when not (a is P.P1) { n := n + 10 }
-           always: when a is P { n := n + 100 } }
+           ever: when a is P { n := n + 100 } }
          system { a = A()  b = B(a = a) }  run { until 3 }",
     );
     assert_eq!(
         run.log(),
         [
-            "0 B.always b",
+            "0 B.ever b",
             "0 A.P1->P2 a P.P1->P.P2.In",
-            "1 A.go a Q.Wait->Q.Next",
             "1 B.gone b",
+            "1 A.go a Q.Wait->Q.Next",
             "2 B.both b",
             "0 A.In->Out a P.P2.In->P.P2.Out",
             "1 A.deep a",
@@ -298,7 +297,10 @@ fn rule_01_how_many_combinations_there_are_is_limited() {
         format!("region {name} {{ initial {} }}", modes.join(" "))
     };
     let text = refused(&format!("agent A {{ {} }}", ["P", "Q", "R", "S"].map(region).join(" ")));
-    assert!(text.contains("HY0293") && text.contains("10000 combinations of modes, more than 1000"), "{text}");
+    assert!(
+        text.contains("HY0293") && text.contains("10000 combinations of modes, more than 1000"),
+        "{text}"
+    );
     assert!(text.contains("--limit max_configurations=N"), "{text}");
 }
 
