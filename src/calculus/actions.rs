@@ -107,12 +107,11 @@ fn collect_writes(steps: &[ActionStep], writes: &mut Vec<(usize, Target)>) {
     for step in steps {
         match step {
             ActionStep::Assign { slot, target, .. } => writes.push((*slot, *target)),
-            ActionStep::Goto { slot, .. } => writes.push((*slot, Target::Mode)),
             ActionStep::If { then, otherwise, .. } => {
                 collect_writes(then, writes);
                 collect_writes(otherwise, writes);
             }
-            ActionStep::Stop { .. } => {}
+            ActionStep::Goto { .. } | ActionStep::Stop { .. } => {}
         }
     }
 }

@@ -109,6 +109,7 @@ fn columns(ty: &AgentType) -> AgentSystem {
         lets: Vec::new(),
         declared: ty.declared.clone(),
         modes: Vec::new(),
+        regions: Vec::new(),
         transitions: Vec::new(),
     }
 }

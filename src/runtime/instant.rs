@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use rustc_hash::FxHashMap;
 
 use crate::base::Span;
-use crate::codegen::program::{ClaimKind, ClaimSystem, Target, Trigger};
-use crate::runtime::act::{Effect, Written, claims};
+use crate::codegen::program::{ClaimKind, ClaimSystem, Trigger};
+use crate::runtime::act::{Claimed, Effect, Written, claims};
 use crate::runtime::arm::Rule;
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason, contested};
@@ -109,7 +109,7 @@ impl Engine<'_, '_> {
             ));
             by_priority.then(by_place)
         });
-        let mut taken: FxHashMap<(usize, Target), u32> = FxHashMap::default();
+        let mut taken: FxHashMap<(usize, Claimed), u32> = FxHashMap::default();
         let (mut chosen, mut passed) = (Vec::new(), Vec::new());
         for ranked in ranked {
             let claims = claims(self, ranked.candidate.instance, &ranked.slots);

@@ -8,7 +8,7 @@ use smallvec::SmallVec;
 use crate::codegen::program::{Flow, Frame, Layout, ModeSystem, Program, Slot};
 use crate::runtime::ahead::Ahead;
 use crate::runtime::cold::Cold;
-use crate::runtime::route::begin_histories;
+use crate::runtime::route::{begin_histories, first};
 use crate::runtime::solve::segment::Segment;
 
 /// No agent: what a slot holds whose link is `none`.
@@ -24,7 +24,7 @@ pub struct Agent {
     pub ty: usize,
     /// Its place among the agents of its type.
     pub rank: usize,
-    /// The leaf mode it is in.
+    /// The configuration it is in: a leaf mode, or one of each region.
     pub mode: usize,
     /// Its group.
     pub group: usize,
@@ -68,7 +68,7 @@ impl<'p> Agents<'p> {
         for (number, instance) in program.population.agents.iter().enumerate() {
             let ty = instance.ty.index();
             let system = &program.types[ty];
-            let mode = instance.mode.index();
+            let mode = first(system, instance.mode.index());
             let mut aux = vec![0.0; system.layout.n_aux()];
             aux[Layout::NUMBER] = number as f64;
             aux[Layout::MODE] = mode as f64;
@@ -212,7 +212,7 @@ impl<'p> Agents<'p> {
 
     /// The equations an agent follows.
     pub fn flow(&self, agent: usize) -> &'p Flow {
-        self.mode(agent).flow.as_ref().expect("an agent is in a leaf mode, and leaves have flows")
+        self.mode(agent).flow.as_ref().expect("an agent is in a configuration, and these have flows")
     }
 
     /// The auxiliary columns, by slot, that the active flow of an agent depends on.

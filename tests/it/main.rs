@@ -43,4 +43,7 @@ mod robust;
 mod chains;
 mod windows;
 mod aggregates;
+mod imports;
+mod tables;
+mod hierarchies;
 mod limits;

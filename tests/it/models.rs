@@ -17,6 +17,7 @@ mod double_crossing;
 mod multirate;
 mod interlock;
 mod convoy;
+mod metro;
 
 use crate::harness::{Case, Ended, near};
 
