@@ -11,6 +11,7 @@ use super::ir::{
 };
 use super::limits;
 use super::operands::for_each_operand;
+use super::quantities::Quantities;
 use super::types::{Quantity, Slot, Ty};
 use crate::base::{Diagnostic, SourceMap, Span};
 use crate::math::Op;
@@ -261,7 +262,7 @@ pub(super) struct Context<'a> {
     /// By expression.
     pub facts: Vec<Facts>,
     /// Where the dimensions of numbers, arguments and named expressions come from.
-    pub quantities: FxHashMap<ExprId, Quantity>,
+    pub quantities: Quantities,
     /// What must have a certain dimension.
     pub goals: Vec<Goal>,
     /// The names of the file.
@@ -299,7 +300,7 @@ impl<'a> Context<'a> {
             sources,
             model: Model { limits: settings.limits, ..Model::default() },
             facts: Vec::new(),
-            quantities: FxHashMap::default(),
+            quantities: Quantities::default(),
             goals: Vec::new(),
             globals: FxHashMap::default(),
             definitions: Vec::new(),

@@ -25,6 +25,8 @@ pub(super) fn declare<'a>(context: &mut Context<'a>, file: &'a ast::Ast) {
 impl<'a> Context<'a> {
     fn declare_globals(&mut self, file: &'a ast::Ast) {
         let (mut system, mut run) = (None, None);
+        self.globals.reserve(file.items.len());
+        self.definitions.reserve(file.items.len());
         for item in &file.items {
             match item {
                 Item::Import(import) => {
