@@ -1,6 +1,10 @@
 //! A system under construction: what the passes of this floor share.
 
-use rustc_hash::FxHashMap;
+use std::hash::BuildHasher as _;
+
+use hashbrown::HashTable;
+use hashbrown::hash_table::Entry;
+use rustc_hash::FxBuildHasher;
 
 use crate::base::{Arena, Diagnostic, Span};
 use crate::calculus::error::Error;
@@ -16,7 +20,8 @@ pub struct Draft<'m> {
     pub graph: Graph,
     /// All functions so far.
     pub functions: Arena<Function>,
-    known: FxHashMap<Vec<NodeId>, FunctionId>,
+    /// By their outputs.
+    known: HashTable<FunctionId>,
     /// The agent types; columns first, then the rest.
     pub types: Vec<AgentSystem>,
     /// What was wrong.
@@ -28,19 +33,24 @@ impl<'m> Draft<'m> {
     pub fn new(model: &'m Model) -> Self {
         let types = model.types.iter().map(columns).collect();
         let (graph, functions) = (Graph::default(), Arena::new());
-        Self { model, graph, functions, known: FxHashMap::default(), types, diagnostics: Vec::new() }
+        Self { model, graph, functions, known: HashTable::new(), types, diagnostics: Vec::new() }
     }
 
     /// The function with these outputs; the first name it was given stays.
     pub fn function(&mut self, name: impl FnOnce() -> String, outputs: Vec<NodeId>) -> FunctionId {
-        if let Some(&known) = self.known.get(&outputs) {
-            return known;
+        let Self { functions, known, graph, .. } = self;
+        let hash = |outputs: &[NodeId]| FxBuildHasher.hash_one(outputs);
+        let is_same = |&id: &FunctionId| functions[id].outputs == outputs;
+        match known.entry(hash(&outputs), is_same, |&id| hash(&functions[id].outputs)) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(place) => {
+                // Its tape will be as long.
+                graph.reach(&outputs);
+                let id = functions.push(Function { name: name(), outputs });
+                place.insert(id);
+                id
+            }
         }
-        // Its tape will be as long.
-        self.graph.reach(&outputs);
-        let id = self.functions.push(Function { name: name(), outputs: outputs.clone() });
-        self.known.insert(outputs, id);
-        id
     }
 
     /// Whether the equations take more work than the limit.

@@ -12,6 +12,7 @@ use super::ir::{
 };
 use super::limits;
 use super::operands::for_each_operand;
+use super::quantities::Quantities;
 use super::types::{Quantity, Slot, Ty};
 use crate::base::{Diagnostic, FileId, SourceMap, Span};
 use crate::math::Op;
@@ -266,7 +267,7 @@ pub(super) struct Context<'a> {
     /// By expression.
     pub facts: Vec<Facts>,
     /// Where the dimensions of numbers, arguments and named expressions come from.
-    pub quantities: FxHashMap<ExprId, Quantity>,
+    pub quantities: Quantities,
     /// What must have a certain dimension.
     pub goals: Vec<Goal>,
     /// The names of the file.
@@ -306,7 +307,7 @@ impl<'a> Context<'a> {
             opened: FxHashMap::default(),
             model: Model { limits: settings.limits, ..Model::default() },
             facts: Vec::new(),
-            quantities: FxHashMap::default(),
+            quantities: Quantities::default(),
             goals: Vec::new(),
             globals: FxHashMap::default(),
             definitions: Vec::new(),

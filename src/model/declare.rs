@@ -25,6 +25,8 @@ pub(super) fn declare<'a>(context: &mut Context<'a>, items: &[&'a Item]) {
 impl<'a> Context<'a> {
     fn declare_globals(&mut self, items: &[&'a Item]) {
         let (mut system, mut run) = (None, None);
+        self.globals.reserve(items.len());
+        self.definitions.reserve(items.len());
         for item in items {
             match item {
                 Item::Import(_) => {}

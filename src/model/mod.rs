@@ -17,6 +17,7 @@ mod measure;
 mod units;
 mod types;
 mod error;
+mod quantities;
 mod operands;
 mod order;
 mod mentions;

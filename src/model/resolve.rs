@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::context::{Context, Global, GlobalKind, Home, Meaning, Member, Scope, Value};
+use super::context::{Context, Global, GlobalKind, Home, Meaning, Member, PairNames, Scope, Value};
 use super::error::{ModeError, NameError, TypeError};
 use super::ir::{Destination, ExprKind, Inside, ModeId, TypeId};
 use super::suggest::closest;
@@ -150,20 +150,23 @@ impl<'a> Context<'a> {
 
     fn unknown_name(&mut self, scope: &Scope<'a>, name: &str, span: Span) -> Value {
         if !self.imports {
-            let mut known = CONSTANTS.to_vec();
-            known.extend(scope.bound.iter().map(|(bound, _)| *bound));
-            known.extend(scope.locals.iter().map(|(local, _)| *local));
-            known.extend(self.globals.keys());
-            if let Home::Agent(ty, mode) = scope.home {
-                known.extend(self.agents[ty.index()].mode_lets[mode.index()].keys());
-            }
-            if let Home::Agent(ty, _) | Home::Initial(ty) = scope.home {
-                known.extend(self.agents[ty.index()].members.keys());
-            }
-            if let Home::Pair(number) = scope.home {
-                known.extend(self.pairs[number].lets.keys());
-                known.extend(self.pairs[number].item.formals.iter().map(|formal| formal.name.text.as_str()));
-            }
+            let bound = scope.bound.iter().map(|(bound, _)| *bound);
+            let locals = scope.locals.iter().map(|(local, _)| *local);
+            let of_file = self.globals.keys().copied();
+            let own: Box<dyn Iterator<Item = &str>> = match scope.home {
+                Home::Agent(ty, mode) => {
+                    let names = &self.agents[ty.index()];
+                    Box::new(names.mode_lets[mode.index()].keys().chain(names.members.keys()).copied())
+                }
+                Home::Initial(ty) => Box::new(self.agents[ty.index()].members.keys().copied()),
+                Home::Pair(number) => {
+                    let PairNames { lets, item, .. } = &self.pairs[number];
+                    let participants = item.formals.iter().map(|formal| formal.name.text.as_str());
+                    Box::new(lets.keys().copied().chain(participants))
+                }
+                Home::File | Home::Function | Home::Construction => Box::new(std::iter::empty()),
+            };
+            let known = CONSTANTS.iter().copied().chain(bound).chain(locals).chain(of_file).chain(own);
             let similar = closest(name, known);
             self.report(NameError::Unknown { what: "variable", name: name.to_string(), span, similar });
         }
