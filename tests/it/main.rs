@@ -43,3 +43,8 @@ mod robust;
 mod windows;
 mod aggregates;
 mod limits;
+mod first_steps;
+mod diagrams;
+mod editors;
+mod data;
+mod report;

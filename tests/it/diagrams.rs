@@ -1,0 +1,106 @@
+//! Do mode diagrams show the modes that a model has? Every mode once, every transition between modes, nothing outside.
+
+use hyc::base::SourceMap;
+use hyc::model::{Diagram, diagrams};
+use hyc::picture::{Theme, modes_dot, modes_svg};
+
+use crate::harness::Case;
+
+fn of(case: Case) -> Vec<Diagram> {
+    let mut sources = SourceMap::default();
+    let model = case.model(&mut sources).unwrap();
+    diagrams(&model, &sources)
+}
+
+const FACTORY: &str = "\
+agent Machine {
+  state x = 0
+  mode Broken { flow { x' = 0 }  mended: after 2 -> Work }
+  initial mode Work {
+    breaks: when x >= 9 -> Broken
+    again:  when x >= 8 -> Work { x := 0 }
+    initial mode Slow { flow { x' = 1 }  when x >= 1 and x <= 2 -> Fast }
+    mode Fast { flow { x' = 2 }  tick: every 1 { x := x + 0.1 }  slow: when x >= 5 -> Slow  over: when x >= 7 -> Broken }
+  }
+}
+interaction Meet(a: Machine, b: Machine) { pair: when a.x <= b.x - 1 { a -> Broken } }
+system { machines = Machine[2](x = index) }
+run { until 1 }
+";
+
+#[test]
+fn the_diagram_has_every_mode_and_every_change() {
+    let diagrams = of(Case::new(FACTORY));
+    assert_eq!(diagrams.len(), 1);
+    let diagram = &diagrams[0];
+    let paths: Vec<&str> = diagram.boxes.iter().map(|shown| shown.path.as_str()).collect();
+    let modes = ["", "Broken", "Work", "Work.Slow", "Work.Fast"];
+    let mut sorted = paths.clone();
+    sorted.sort_by_key(|path| modes.iter().position(|mode| mode == path));
+    assert_eq!(sorted, modes);
+    let place = |path: &str| paths.iter().position(|other| *other == path).unwrap();
+    let arrows: Vec<(usize, usize, Option<&str>, &str)> = (diagram.arrows.iter())
+        .map(|arrow| (arrow.from, arrow.to, arrow.label.as_deref(), arrow.trigger.as_str()))
+        .collect();
+    let expected = [
+        ("Broken", "Work", Some("mended"), "after 2"),
+        ("Work", "Broken", Some("breaks"), "when x >= 9"),
+        ("Work", "Work", Some("again"), "when x >= 8"),
+        ("Work.Slow", "Work.Fast", None, "when x >= 1 and x <= 2"),
+        ("Work.Fast", "Work.Slow", Some("slow"), "when x >= 5"),
+        ("Work.Fast", "Broken", Some("over"), "when x >= 7"),
+        ("", "Broken", Some("Meet.pair"), "when a.x <= b.x - 1"),
+    ];
+    for (from, to, label, trigger) in expected {
+        let arrow = (place(from), place(to), label, trigger);
+        assert!(arrows.contains(&arrow), "{arrow:?} in {arrows:?}");
+    }
+    assert_eq!(arrows.len(), expected.len());
+    assert_eq!(diagram.arrows.iter().find(|arrow| arrow.label.as_deref() == Some("again")).unwrap().actions, "x := 0");
+    assert_eq!(diagram.boxes[place("Work.Fast")].lines, ["x' = 2", "tick: every 1 { x := x + 0.1 }"]);
+    assert!(diagram.boxes[place("Work")].initial && diagram.boxes[place("Work.Slow")].initial);
+    assert!(!diagram.boxes[place("Broken")].initial);
+}
+
+#[test]
+fn both_forms_name_everything() {
+    let diagrams = of(Case::new(FACTORY));
+    let (dot, svg) = (modes_dot(&diagrams), modes_svg(&diagrams, Theme::Own));
+    for word in ["Machine", "Broken", "Work", "Slow", "Fast", "mended", "again", "Meet.pair", "after 2"] {
+        assert!(dot.contains(word) && svg.contains(word), "{word}");
+    }
+    assert!(svg.contains("x &lt;= 2") && dot.contains("x <= 2"));
+    assert_eq!(dot.matches('{').count(), dot.matches('}').count());
+    // every agent type, mode and arrow is drawn: a box each, an arrow's head each, and one for each initial mode
+    assert_eq!(svg.matches("<rect").count() - svg.matches("width=\"4\"").count(), 5);
+    assert_eq!(svg.matches("class=\"head\"").count(), 6 + 2);
+}
+
+#[test]
+fn every_shipped_model_has_a_diagram_that_lies_within_its_frame() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/models");
+    let files = std::fs::read_dir(folder).unwrap();
+    let names = files.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    for name in names.filter(|name| name.ends_with(".hy")) {
+        let diagrams = of(Case::shipped(&name));
+        let svg = modes_svg(&diagrams, Theme::Own);
+        let (mut size, mut furthest) = (None, (0.0_f64, 0.0_f64));
+        for line in svg.lines() {
+            let number = |key: &str| {
+                let rest = line.split(&format!(" {key}=\"")).nth(1)?;
+                rest.split('"').next()?.parse::<f64>().ok()
+            };
+            if line.starts_with("<svg") {
+                size = number("width").zip(number("height"));
+            } else if line.starts_with("<rect") || line.starts_with("<text") {
+                let (x, y) = (number("x").unwrap(), number("y").unwrap());
+                assert!(x >= 0.0 && y >= 0.0, "{name}: {line}");
+                furthest.0 = furthest.0.max(x + number("width").unwrap_or(0.0));
+                furthest.1 = furthest.1.max(y + number("height").unwrap_or(0.0));
+            }
+        }
+        let (width, height) = size.unwrap();
+        assert!(furthest.0 <= width && furthest.1 <= height, "{name}: {furthest:?} in {size:?}");
+        assert!(modes_dot(&diagrams).starts_with("digraph"));
+    }
+}
