@@ -41,8 +41,18 @@ mod tests {
 
     #[test]
     fn numbers_look_as_the_standard_library_writes_them() {
-        let mut awkward = vec![0.0, -0.0, 1.0, -1.0, 0.1, 1e-5, 9.999e-6, 1e15, 1e16, 1e17, 123456.0, f64::NAN];
-        awkward.extend([f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN_POSITIVE, 5e-324, 1e21, 1e22, 1e23]);
+        let mut awkward =
+            vec![0.0, -0.0, 1.0, -1.0, 0.1, 1e-5, 9.999e-6, 1e15, 1e16, 1e17, 123456.0, f64::NAN];
+        awkward.extend([
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            f64::MAX,
+            f64::MIN_POSITIVE,
+            5e-324,
+            1e21,
+            1e22,
+            1e23,
+        ]);
         awkward.extend((-330..310).map(|k| format!("1e{k}").parse::<f64>().unwrap()));
         // a linear congruence over all bit patterns, and over numbers of everyday size
         let mut bits: u64 = 1;

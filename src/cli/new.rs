@@ -20,12 +20,12 @@ pub(super) fn new(arguments: &NewArguments) -> Result<Exit, Refused> {
     let stem = stem.and_then(|stem| stem.to_str()).ok_or("a name is needed: `hyc new robots`")?;
     let shown = path.display();
     let text = MODEL.replace("NAME", stem);
-    File::create_new(&path).and_then(|mut file| file.write_all(text.as_bytes())).map_err(|error| {
-        match error.kind() {
+    File::create_new(&path).and_then(|mut file| file.write_all(text.as_bytes())).map_err(
+        |error| match error.kind() {
             io::ErrorKind::AlreadyExists => format!("`{shown}` is there already; give another name"),
             _ => format!("cannot write `{shown}`: {}", reason(&error)),
-        }
-    })?;
+        },
+    )?;
     say(&format!(
         "wrote {shown}, a model that runs:\n\
          \x20 hyc run {shown}      simulate it\n\

@@ -32,7 +32,10 @@ pub(super) fn plot(arguments: &PlotArguments) -> Result<Exit, Refused> {
         traces_of_table(input)?
     };
     let view = view(arguments, &traces)?;
-    let out = arguments.out.clone().unwrap_or_else(|| Path::new(input.file_stem().unwrap_or_default()).with_extension("svg"));
+    let out = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| Path::new(input.file_stem().unwrap_or_default()).with_extension("svg"));
     let form = match out.extension().and_then(|ending| ending.to_str()) {
         Some("svg") => Form::Svg,
         Some("png") => Form::Png,
@@ -40,7 +43,8 @@ pub(super) fn plot(arguments: &PlotArguments) -> Result<Exit, Refused> {
     };
     let title = name_of(Path::new(input.file_name().unwrap_or_default()));
     let bytes = draw(&traces, &view, &title, form)?;
-    fs::write(&out, bytes).map_err(|error| format!("cannot write `{}`: {}", out.display(), reason(&error)))?;
+    fs::write(&out, bytes)
+        .map_err(|error| format!("cannot write `{}`: {}", out.display(), reason(&error)))?;
     say(&format!("wrote {}\n", out.display()))?;
     Ok(Exit::Fine)
 }
@@ -70,9 +74,11 @@ fn traces_of_model(arguments: &PlotArguments) -> Result<Result<Traces, Exit>, Re
             return Ok(Err(Exit::ModelErrors));
         }
     };
-    let watched = watch(&model, &mut program)?;
+    let (record, watched) = watch(&model, &program)?;
+    let number = program.run.records.len();
+    program.run.records.push(record);
     let (cast, diagrams) = (cast_of(&program), model::diagrams(&model, &sources));
-    let mut recording = Recording::new(&cast, &watched.types, &diagrams, watched.record);
+    let mut recording = Recording::new(&cast, &watched.types, &diagrams, number);
     let mut tables = Tables::new(&cast);
     tables.also(&mut recording);
     let algorithm = Algorithm::Masim(paper::Form::Fast);
@@ -92,12 +98,13 @@ fn traces_of_model(arguments: &PlotArguments) -> Result<Result<Traces, Exit>, Re
 
 /// What `--xy` and `--columns` ask for; without them everything over time.
 fn view(arguments: &PlotArguments, traces: &Traces) -> Result<View, Refused> {
-    let find = |name: &String| {
-        let known = |column: &String| column == name || column.split(',').next() == Some(name.as_str());
-        traces.columns.iter().position(known).ok_or_else(|| {
-            format!("there is no column `{name}`; there are {}", traces.columns.join("; "))
-        })
-    };
+    let find =
+        |name: &String| {
+            let known = |column: &String| column == name || column.split(',').next() == Some(name.as_str());
+            traces.columns.iter().position(known).ok_or_else(|| {
+                format!("there is no column `{name}`; there are {}", traces.columns.join("; "))
+            })
+        };
     match &arguments.xy[..] {
         [] if arguments.columns.is_empty() => Ok(View::OverTime((0..traces.columns.len()).collect())),
         [] => Ok(View::OverTime(arguments.columns.iter().map(find).collect::<Result<_, _>>()?)),

@@ -13,7 +13,7 @@ use super::refusal::{refuse_aggregates, refuse_endless, refuse_engine};
 use super::sinks::{Sinks, prepare_folder};
 use super::terminal::{complain, say, say_aside, tell};
 use super::warnings::Levels;
-use super::watch::watch;
+use super::watch::{Watched, watch};
 use super::{Exit, Refused, claims};
 use crate::base::{Diagnostic, SourceMap};
 use crate::calculus;
@@ -69,11 +69,16 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
 
     let cast = cast_of(&program);
     let mut sinks = Sinks::new(&inputs);
-    let (mut tables, stats_sink) = open_outputs(arguments, &program, &cast, &sources, &mut sinks)?;
     let report_sink = arguments.outputs.report.as_deref().map(|path| sinks.open(path)).transpose()?;
-    let watched = report_sink.as_ref().map(|_| watch(&model, &mut program)).transpose()?;
+    let (record, watched) = report_sink.as_ref().map(|_| watch(&model, &program)).transpose()?.unzip();
     let diagrams = model::diagrams(&model, &sources);
-    let mut recording = watched.as_ref().map(|watched| Recording::new(&cast, &watched.types, &diagrams, watched.record));
+    let n_records = program.run.records.len();
+    let mut recording = None;
+    if let Some(Watched { types, .. }) = &watched {
+        recording = Some(Recording::new(&cast, types, &diagrams, n_records));
+    }
+    let (mut tables, stats_sink) = open_outputs(arguments, &program, &cast, &sources, &mut sinks)?;
+    program.run.records.extend(record);
     if let Some(recording) = &mut recording {
         tables.also(recording);
     }
@@ -184,7 +189,8 @@ fn open_outputs<'a>(
     let mut tables = Tables::new(cast);
     let named = wanted.named == Outputs::Written;
     let in_folder = |file: &String| folder.join(file);
-    let events = wanted.events.clone().or_else(|| program.run.events.as_ref().filter(|_| named).map(in_folder));
+    let events =
+        wanted.events.clone().or_else(|| program.run.events.as_ref().filter(|_| named).map(in_folder));
     if let Some(path) = events {
         tables.event_log(sinks.open(&path)?).map_err(|error| error.to_string())?;
     }

@@ -13,25 +13,23 @@ const NUMBERS: f64 = 2e6;
 /// A whole number that differs from agent to agent, with no more values than these, is a place to be drawn at (a lane).
 const PLACES: usize = 12;
 
-/// What is sampled for a page: the number of the record, its columns, which of them make the plane.
+/// What is sampled for a page: the columns of the record, which of them make the plane.
 pub(super) struct Watched {
-    pub(super) record: usize,
     pub(super) columns: Vec<Shown>,
     pub(super) plane: [Option<usize>; 2],
     /// The type of each agent.
     pub(super) types: Vec<usize>,
 }
 
-/// Adds a record of all agents to those of the model.
-pub(super) fn watch(model: &Model, program: &mut Program) -> Result<Watched, Refused> {
+/// A record of all agents, to be added to those of the model, and what it holds.
+pub(super) fn watch(model: &Model, program: &Program) -> Result<(Record, Watched), Refused> {
     let until = program.run.until.ok_or("a page needs an end of the run: add `--until T`")?;
     let found = columns(model);
     let n_agents = program.population.agents.len();
     let n_numbers = (n_agents * found.len()).max(1) as f64;
     let n_samples = (NUMBERS / n_numbers).clamp(SAMPLES_LEAST, SAMPLES_MOST);
-    let variables = (0..model.types.len())
-        .map(|ty| found.iter().map(|column| column.variables[ty]).collect())
-        .collect();
+    let variables =
+        (0..model.types.len()).map(|ty| found.iter().map(|column| column.variables[ty]).collect()).collect();
     let shown: Vec<Shown> = found.into_iter().map(|column| column.shown).collect();
     let record = Record {
         agents: (0..n_agents).collect(),
@@ -41,9 +39,8 @@ pub(super) fn watch(model: &Model, program: &mut Program) -> Result<Watched, Ref
         file: None,
         span: Span::default(),
     };
-    program.run.records.push(record);
     let types = model.population.agents.iter().map(|agent| agent.ty.index()).collect();
-    Ok(Watched { record: program.run.records.len() - 1, plane: plane(&shown), columns: shown, types })
+    Ok((record, Watched { plane: plane(&shown), columns: shown, types }))
 }
 
 /// A column of the page's record.
@@ -57,7 +54,8 @@ struct Found {
 fn columns(model: &Model) -> Vec<Found> {
     let mut found: Vec<Found> = Vec::new();
     for (ty, agent) in model.types.iter().enumerate() {
-        let states = agent.states.iter().enumerate().map(|(k, state)| (state, VarRef::State(k), Varies::InTime));
+        let states =
+            agent.states.iter().enumerate().map(|(k, state)| (state, VarRef::State(k), Varies::InTime));
         let discretes = agent.discretes.iter().enumerate();
         let discretes = discretes.map(|(k, discrete)| (discrete, VarRef::Discrete(k), Varies::InTime));
         let params = agent.params.iter().enumerate().filter(|(k, param)| is_place(model, ty, *k, param));
@@ -66,7 +64,10 @@ fn columns(model: &Model) -> Vec<Found> {
             let place = found.iter().position(|column| column.shown.name == variable.name);
             let place = place.unwrap_or_else(|| {
                 let (name, unit) = (variable.name.clone(), variable.unit.clone());
-                found.push(Found { shown: Shown { name, unit, varies }, variables: vec![None; model.types.len()] });
+                found.push(Found {
+                    shown: Shown { name, unit, varies },
+                    variables: vec![None; model.types.len()],
+                });
                 found.len() - 1
             });
             found[place].variables[ty] = Some(reference);

@@ -59,8 +59,7 @@ pub fn diagrams(model: &Model, sources: &SourceMap) -> Vec<Diagram> {
 }
 
 fn diagram(agent: &AgentType, sources: &SourceMap) -> Diagram {
-    let mut boxes: Vec<ModeBox> =
-        agent.modes.iter().map(|mode| mode_box(agent, mode, sources)).collect();
+    let mut boxes: Vec<ModeBox> = agent.modes.iter().map(|mode| mode_box(agent, mode, sources)).collect();
     let mut arrows = Vec::new();
     for transition in &agent.transitions {
         let text = Written::read(sources.text(transition.span));
@@ -115,7 +114,11 @@ fn arrows_of_interactions(model: &Model, ty: TypeId, sources: &SourceMap) -> Vec
 
 fn of_interaction(transition: &Transition, target: ModeId, sources: &SourceMap) -> Arrow {
     let text = Written::read(sources.text(transition.span));
-    Arrow { label: Some(transition.label.clone()), actions: String::new(), ..text.arrow(ModeId::new(0), target) }
+    Arrow {
+        label: Some(transition.label.clone()),
+        actions: String::new(),
+        ..text.arrow(ModeId::new(0), target)
+    }
 }
 
 fn find_gotos(actions: &[Action], found: &mut Vec<(usize, ModeId)>) {
@@ -163,7 +166,8 @@ impl Written {
 
     fn line(self) -> String {
         let label = self.label.map(|label| format!("{label}: ")).unwrap_or_default();
-        let actions = if self.actions.is_empty() { String::new() } else { format!(" {{ {} }}", self.actions) };
+        let actions =
+            if self.actions.is_empty() { String::new() } else { format!(" {{ {} }}", self.actions) };
         format!("{label}{}{actions}", self.trigger)
     }
 }

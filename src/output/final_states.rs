@@ -29,7 +29,8 @@ impl FinalStates {
         let fixed = [("time", Kind::Number), ("agent", Kind::Text), ("mode", Kind::Text)];
         let fixed = fixed.map(|(name, kind)| Column::new(name, kind));
         let table = Table::new(sink, &[&fixed[..], &columns].concat())?;
-        let places = cast.types.iter().map(|ty| columns.iter().map(|column| place_of(ty, &column.name)).collect());
+        let places =
+            cast.types.iter().map(|ty| columns.iter().map(|column| place_of(ty, &column.name)).collect());
         let places = places.collect();
         Ok(Self { table, places })
     }

@@ -95,7 +95,9 @@ fn types(report: &Report<'_>) -> Value {
 }
 
 fn parts(named: &[(&str, f64)]) -> Value {
-    Value::Object(named.iter().map(|(name, seconds)| (name.replace(' ', "_"), json!(seconds))).collect::<Map<_, _>>())
+    Value::Object(
+        named.iter().map(|(name, seconds)| (name.replace(' ', "_"), json!(seconds))).collect::<Map<_, _>>(),
+    )
 }
 
 fn counts(named: &[(String, u64)]) -> Value {

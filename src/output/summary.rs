@@ -88,7 +88,10 @@ fn guards(text: &mut String, report: &Report<'_>) {
         0 => String::new(),
         n => format!("; {} could be neither excluded nor isolated: --explain-events", counted(n, "root")),
     };
-    line(text, format_args!("  guards     evaluated {points} times at a point, {ranges} over an interval{roots}"));
+    line(
+        text,
+        format_args!("  guards     evaluated {points} times at a point, {ranges} over an interval{roots}"),
+    );
 }
 
 fn claims(text: &mut String, report: &Report<'_>) {

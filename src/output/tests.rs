@@ -49,8 +49,16 @@ fn cast() -> Cast {
     Cast {
         agents: names(&["fast", "cars[0]", "odd, name"]),
         types: vec![
-            TypeColumns { states: names(&["x", "y"]), discretes: names(&["lane"]), discrete_kinds: vec![Kind::Number] },
-            TypeColumns { states: names(&["y"]), discretes: names(&["on"]), discrete_kinds: vec![Kind::Bool] },
+            TypeColumns {
+                states: names(&["x", "y"]),
+                discretes: names(&["lane"]),
+                discrete_kinds: vec![Kind::Number],
+            },
+            TypeColumns {
+                states: names(&["y"]),
+                discretes: names(&["on"]),
+                discrete_kinds: vec![Kind::Bool],
+            },
         ],
     }
 }
@@ -121,7 +129,11 @@ fn each_record_has_its_table_and_each_kind_of_cell_its_form() {
     let mut tables = Tables::new(&cast);
     tables.trajectory(first.sink(), &[Column::new("x", Kind::Number)]).unwrap();
     let kinds = [Kind::Number, Kind::Number, Kind::Bool, Kind::Text, Kind::Text];
-    let columns: Vec<Column> = ["a", "b", "c", "d", "e"].into_iter().zip(kinds).map(|(name, kind)| Column::new(name, kind)).collect();
+    let columns: Vec<Column> = ["a", "b", "c", "d", "e"]
+        .into_iter()
+        .zip(kinds)
+        .map(|(name, kind)| Column::new(name, kind))
+        .collect();
     tables.trajectory(second.sink(), &columns).unwrap();
     let cells = [Cell::Empty, Cell::Number(2.0), Cell::Bool(true), Cell::Agent(Some(1)), Cell::Agent(None)];
     let row = Row { time: 0.25, micro: 1, agent: 0, mode: "Spiral", cells: &cells };

@@ -14,7 +14,8 @@ pub(super) struct Trajectory {
 
 impl Trajectory {
     pub(super) fn new(sink: Sink, columns: &[Column]) -> io::Result<Self> {
-        let fixed = [("time", Kind::Number), ("micro", Kind::Count), ("agent", Kind::Text), ("mode", Kind::Text)];
+        let fixed =
+            [("time", Kind::Number), ("micro", Kind::Count), ("agent", Kind::Text), ("mode", Kind::Text)];
         let fixed = fixed.map(|(name, kind)| Column::new(name, kind));
         Ok(Self { table: Table::new(sink, &[&fixed[..], columns].concat())? })
     }

@@ -109,7 +109,8 @@ mod tests {
     fn nothing_is_lost() {
         for text in ["\"open", "x[", "2e", "2e+", "é // ü", "1 [m", "é\"ü\nx"] {
             let html = highlighted(text);
-            let parts: String = html.split('<').map(|part| part.split_once('>').map_or(part, |(_, text)| text)).collect();
+            let parts: String =
+                html.split('<').map(|part| part.split_once('>').map_or(part, |(_, text)| text)).collect();
             assert_eq!(parts.replace("&quot;", "\""), text);
         }
     }

@@ -125,7 +125,8 @@ impl Web {
             port,
         };
         let boxes = sizes.iter().zip(ranks).map(|(&size, &rank)| node(size, rank, size.width / 2.0));
-        let mut web = Self { nodes: boxes.collect(), layers: Vec::new(), chains: Vec::new(), texts: Vec::new() };
+        let mut web =
+            Self { nodes: boxes.collect(), layers: Vec::new(), chains: Vec::new(), texts: Vec::new() };
         for (edge, &reversed) in edges.iter().zip(reversed) {
             let (upper, lower) = if reversed { (edge.to, edge.from) } else { (edge.from, edge.to) };
             // a text stands beside the box that its arrow leaves
@@ -205,10 +206,8 @@ impl Web {
                 .map(|(upper, lower)| (places[upper], places[lower]))
                 .collect();
             for (k, one) in lines.iter().enumerate() {
-                count += lines[k + 1..]
-                    .iter()
-                    .filter(|other| (one.0 - other.0) * (one.1 - other.1) < 0.0)
-                    .count();
+                count +=
+                    lines[k + 1..].iter().filter(|other| (one.0 - other.0) * (one.1 - other.1) < 0.0).count();
             }
         }
         count
@@ -241,7 +240,11 @@ impl Web {
         let order = self.layers[layer].clone();
         let wish = |number: usize| {
             let node = &self.nodes[number];
-            let near = node.above.iter().chain(&node.below).map(|&other| self.nodes[other].x + self.nodes[other].port);
+            let near = node
+                .above
+                .iter()
+                .chain(&node.below)
+                .map(|&other| self.nodes[other].x + self.nodes[other].port);
             let (sum, n) = near.fold((0.0, 0), |(sum, n), x| (sum + x, n + 1));
             if n == 0 { node.x } else { sum / f64::from(n) - node.port }
         };
@@ -282,8 +285,10 @@ impl Web {
             let (upper, lower) = if reversed[k] { (edge.to, edge.from) } else { (edge.from, edge.to) };
             let chain = &self.chains[k];
             let (first, last) = (chain[0], chain[chain.len() - 1]);
-            let mut route =
-                vec![(self.port(upper, &self.nodes[upper].below, first), top_of(upper) + sizes[upper].height)];
+            let mut route = vec![(
+                self.port(upper, &self.nodes[upper].below, first),
+                top_of(upper) + sizes[upper].height,
+            )];
             for &number in chain {
                 let (top, height) = (tops[self.nodes[number].rank], heights[self.nodes[number].rank]);
                 route.extend([(self.nodes[number].x, top), (self.nodes[number].x, top + height)]);
@@ -330,20 +335,29 @@ mod tests {
 
     #[test]
     fn nothing_lies_upon_anything_else() {
-        let complete = (0..5).flat_map(|from| (0..5).filter(move |&to| to != from).map(move |to| edge(from, to)));
+        let complete =
+            (0..5).flat_map(|from| (0..5).filter(move |&to| to != from).map(move |to| edge(from, to)));
         let chain = (0..4).map(|k| edge(k, k + 1));
         let none: Vec<Edge> = Vec::new();
-        for edges in [complete.collect::<Vec<_>>(), chain.collect(), none, vec![edge(0, 1), edge(1, 0), edge(0, 1)]] {
+        for edges in
+            [complete.collect::<Vec<_>>(), chain.collect(), none, vec![edge(0, 1), edge(1, 0), edge(0, 1)]]
+        {
             let layout = lay_out(&[BOX; 5], &edges);
             let boxes = layout.boxes.iter().map(|&place| (place, BOX));
-            let things: Vec<(Point, Size)> = boxes.chain(layout.texts.iter().map(|&place| (place, TEXT))).collect();
+            let things: Vec<(Point, Size)> =
+                boxes.chain(layout.texts.iter().map(|&place| (place, TEXT))).collect();
             assert_eq!(things.len(), 5 + edges.len());
             for (k, one) in things.iter().enumerate() {
                 for other in &things[k + 1..] {
                     assert!(!overlap(one.0, one.1, other.0, other.1), "{one:?} {other:?}");
                 }
                 let (x, y) = one.0;
-                assert!(x >= 0.0 && y >= 0.0 && x + one.1.width <= layout.width && y + one.1.height <= layout.height);
+                assert!(
+                    x >= 0.0
+                        && y >= 0.0
+                        && x + one.1.width <= layout.width
+                        && y + one.1.height <= layout.height
+                );
             }
         }
     }

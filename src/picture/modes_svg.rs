@@ -41,7 +41,8 @@ pub fn modes_svg(diagrams: &[Diagram], theme: Theme) -> String {
         })
         .collect();
     let width: f64 = pictures.iter().map(|picture| picture.frames[0].size.width + APART).sum::<f64>() + APART;
-    let height = pictures.iter().map(|picture| picture.frames[0].size.height).fold(0.0, f64::max) + 2.0 * APART;
+    let height =
+        pictures.iter().map(|picture| picture.frames[0].size.height).fold(0.0, f64::max) + 2.0 * APART;
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"modes\" width=\"{width:.0}\" height=\"{height:.0}\" \
          viewBox=\"0 0 {width:.0} {height:.0}\" role=\"img\" aria-label=\"Modes of the agent types\">\n"
@@ -159,7 +160,8 @@ impl<'a> Picture<'a> {
         let (from, to) = (self.chain(arrow.from), self.chain(arrow.to));
         let shared = from.iter().zip(&to).take_while(|(one, other)| one == other).count();
         let level = from[shared - 1];
-        let entered = || self.diagram.boxes[level].children.iter().copied().find(|&k| self.diagram.boxes[k].initial);
+        let entered =
+            || self.diagram.boxes[level].children.iter().copied().find(|&k| self.diagram.boxes[k].initial);
         match (from.get(shared), to.get(shared)) {
             (from, Some(&to)) => Lifted { level, from: from.copied(), to },
             (from, None) => match entered() {
@@ -194,10 +196,7 @@ impl<'a> Picture<'a> {
         let head = TITLE + frame.lines.len() as f64 * LINE + if frame.lines.is_empty() { 4.0 } else { 8.0 };
         let inner = if sizes.is_empty() { 0.0 } else { layout.height + 2.0 * PAD + 4.0 };
         let frame = &mut self.frames[place];
-        frame.size = Size {
-            width: title.max(longest).max(layout.width) + 2.0 * PAD,
-            height: head + inner,
-        };
+        frame.size = Size { width: title.max(longest).max(layout.width) + 2.0 * PAD, height: head + inner };
         frame.head = head;
         frame.inside = order;
         frame.layout = layout;
@@ -236,15 +235,23 @@ impl<'a> Picture<'a> {
         let (frame, shown) = (&self.frames[place], &self.diagram.boxes[place]);
         let Size { width, height } = frame.size;
         let class = if frame.colour.is_some() { " class=\"leaf\"" } else { "" };
-        put(svg, format_args!("<rect{class} x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" rx=\"6\"/>"));
+        put(
+            svg,
+            format_args!(
+                "<rect{class} x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" rx=\"6\"/>"
+            ),
+        );
         if let Some(number) = frame.colour {
             let fill = hex(colour(number));
             let bar = height - 8.0;
-            put(svg, format_args!(
-                "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"4\" height=\"{bar:.1}\" rx=\"2\" style=\"fill:{fill};stroke:none\"/>",
-                x + 3.0,
-                y + 4.0
-            ));
+            put(
+                svg,
+                format_args!(
+                    "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"4\" height=\"{bar:.1}\" rx=\"2\" style=\"fill:{fill};stroke:none\"/>",
+                    x + 3.0,
+                    y + 4.0
+                ),
+            );
         }
         if shown.initial {
             let (x, y) = (x + 14.0, y - 10.0);
@@ -311,7 +318,8 @@ const ANYWHERE: &str = "from any mode";
 fn arrow_lines(arrow: &Arrow) -> Vec<(&'static str, String)> {
     let label = arrow.label.iter().map(|label| ("label", label.clone()));
     let trigger = wrapped(&arrow.trigger).into_iter().map(|line| ("", line));
-    let actions = if arrow.actions.is_empty() { Vec::new() } else { wrapped(&format!("{{ {} }}", arrow.actions)) };
+    let actions =
+        if arrow.actions.is_empty() { Vec::new() } else { wrapped(&format!("{{ {} }}", arrow.actions)) };
     label.chain(trigger).chain(actions.into_iter().map(|line| ("faint", line))).collect()
 }
 

@@ -118,7 +118,8 @@ fn column(recording: &Recording<'_>, k: usize, shown: &Shown) -> Value {
         None => shown.name.clone(),
     };
     // where both columns of the plane have the same of these, a circle is drawn as one
-    let length = shown.unit.clone().or_else(|| ["x", "y", "z"].contains(&&*shown.name).then(|| "plane".into()));
+    let length =
+        shown.unit.clone().or_else(|| ["x", "y", "z"].contains(&&*shown.name).then(|| "plane".into()));
     json!({
         "label": label,
         "length": length,

@@ -51,14 +51,13 @@ type Failed = Box<dyn std::error::Error + Send + Sync>;
 ///
 /// If the library that draws fails.
 pub fn plot(traces: &Traces, view: &View, title: &str, form: Form) -> Result<Vec<u8>, String> {
-    let font = include_bytes!("font/DejaVuSans-subset.ttf");
-    plotters::style::register_font("sans-serif", FontStyle::Normal, font)
-        .map_err(|_| "the font of the program is broken".to_string())?;
+    ready_font()?;
     let size = (WIDTH, height(traces, view));
     let drawn = match form {
         Form::Svg => {
             let mut text = String::new();
-            let drawn = draw(SVGBackend::with_string(&mut text, size).into_drawing_area(), traces, view, title);
+            let drawn =
+                draw(SVGBackend::with_string(&mut text, size).into_drawing_area(), traces, view, title);
             drawn.map(|()| text.into_bytes())
         }
         Form::Png => {
@@ -70,19 +69,36 @@ pub fn plot(traces: &Traces, view: &View, title: &str, form: Form) -> Result<Vec
     drawn.map_err(|error| error.to_string())
 }
 
+/// Makes the program's font the one that plotters uses.
+///
+/// # Errors
+///
+/// If the font is broken.
+pub fn ready_font() -> Result<(), String> {
+    let font = include_bytes!("font/DejaVuSans-subset.ttf");
+    let registered = plotters::style::register_font("sans-serif", FontStyle::Normal, font);
+    registered.map_err(|_| "the font of the program is broken".to_string())
+}
+
 fn height(traces: &Traces, view: &View) -> u32 {
     let below = if below_rows(traces) > 0 { below_rows(traces) as u32 * ROW + 60 } else { 0 };
     match view {
         View::Plane(..) => PLANE + 40,
         View::OverTime(columns) if columns.is_empty() => 70 + traces.agents.len().clamp(4, 60) as u32 * ROW,
-        View::OverTime(columns) => 36 + columns.len().min(PANELS_MAX) as u32 * PANEL + below + 26 * legend_rows(traces),
+        View::OverTime(columns) => {
+            36 + columns.len().min(PANELS_MAX) as u32 * PANEL + below + 26 * legend_rows(traces)
+        }
     }
 }
 
 /// How many rows of modes and events there are.
 fn below_rows(traces: &Traces) -> usize {
     let modes = traces.agents.iter().any(|trace| trace.modes.iter().any(Option::is_some));
-    if (modes || !traces.events.is_empty()) && traces.agents.len() <= ROWS_MAX { traces.agents.len() } else { 0 }
+    if (modes || !traces.events.is_empty()) && traces.agents.len() <= ROWS_MAX {
+        traces.agents.len()
+    } else {
+        0
+    }
 }
 
 fn legend_rows(traces: &Traces) -> u32 {
@@ -161,7 +177,8 @@ fn span(traces: &Traces) -> Range<f64> {
 /// The range of some numbers with a margin; never empty.
 fn spread(values: impl Iterator<Item = f64>, margin: f64) -> Range<f64> {
     let finite = values.filter(|value| value.is_finite());
-    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let (low, high) =
+        finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     if low > high {
         return 0.0..1.0;
     }
@@ -230,7 +247,11 @@ where
     Ok(())
 }
 
-type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<plotters::coord::types::RangedCoordf64, plotters::coord::types::RangedCoordf64>>;
+type Chart<'a, B> = ChartContext<
+    'a,
+    B,
+    Cartesian2d<plotters::coord::types::RangedCoordf64, plotters::coord::types::RangedCoordf64>,
+>;
 
 fn mesh<B: DrawingBackend>(chart: &mut Chart<'_, B>, across: &str, up: &str) -> Result<(), Failed>
 where
@@ -261,7 +282,11 @@ fn short(value: f64) -> String {
 }
 
 /// Modes as bands and events as ticks, a row for each agent.
-fn rows<B: DrawingBackend>(panel: &DrawingArea<B, Shift>, traces: &Traces, span: &Range<f64>) -> Result<(), Failed>
+fn rows<B: DrawingBackend>(
+    panel: &DrawingArea<B, Shift>,
+    traces: &Traces,
+    span: &Range<f64>,
+) -> Result<(), Failed>
 where
     B::ErrorType: 'static,
 {
@@ -293,7 +318,8 @@ where
     let half = if traces.agents.len() <= 60 { 0.42 } else { 0.9 };
     for &(time, agent) in &traces.events {
         let row = agent as f64 + 0.5;
-        chart.draw_series([PathElement::new([(time, row - half), (time, row + half)], INK.stroke_width(1))])?;
+        chart
+            .draw_series([PathElement::new([(time, row - half), (time, row + half)], INK.stroke_width(1))])?;
     }
     let every = n.div_ceil(60);
     let place = chart.plotting_area().get_pixel_range();
@@ -325,7 +351,12 @@ fn bands(trace: &Trace) -> Vec<(f64, f64, usize)> {
     bands
 }
 
-fn plane<B: DrawingBackend>(panel: &DrawingArea<B, Shift>, traces: &Traces, across: usize, up: usize) -> Result<(), Failed>
+fn plane<B: DrawingBackend>(
+    panel: &DrawingArea<B, Shift>,
+    traces: &Traces,
+    across: usize,
+    up: usize,
+) -> Result<(), Failed>
 where
     B::ErrorType: 'static,
 {

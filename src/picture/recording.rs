@@ -111,7 +111,9 @@ impl Observer for Recording<'_> {
         self.n_events += 1;
         if self.events.len() < EVENTS_MAX {
             let transition = number_in(&mut self.transitions, event.transition);
-            let modes = event.modes.map(|(from, to)| (number_in(&mut self.paths, from), number_in(&mut self.paths, to)));
+            let modes = event
+                .modes
+                .map(|(from, to)| (number_in(&mut self.paths, from), number_in(&mut self.paths, to)));
             let Event { time, agent, other, .. } = *event;
             self.events.push(Happened { time, transition, agent, other, modes });
         }

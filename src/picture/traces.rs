@@ -34,8 +34,16 @@ impl Traces {
         let agents = recording.tracks.iter().map(|track| Trace {
             name: track.name.clone(),
             times: recording.times.clone(),
-            values: track.values.iter().map(|values| values.iter().copied().map(f64::from).collect()).collect(),
-            modes: track.modes.iter().map(|&mode| Some(usize::from(mode)).filter(|&mode| mode < recording.modes.len())).collect(),
+            values: track
+                .values
+                .iter()
+                .map(|values| values.iter().copied().map(f64::from).collect())
+                .collect(),
+            modes: track
+                .modes
+                .iter()
+                .map(|&mode| Some(usize::from(mode)).filter(|&mode| mode < recording.modes.len()))
+                .collect(),
         });
         let events = recording.events.iter().flat_map(|event| {
             [Some(event.agent), event.other].into_iter().flatten().map(|agent| (event.time, agent))
@@ -66,14 +74,13 @@ impl Traces {
             true => Vec::new(),
             false => (0..header.len()).filter(|&k| !fixed.contains(&&header[k])).collect(),
         };
-        let mut traces = Self {
-            columns: columns.iter().map(|&k| header[k].to_string()).collect(),
-            ..Self::default()
-        };
+        let mut traces =
+            Self { columns: columns.iter().map(|&k| header[k].to_string()).collect(), ..Self::default() };
         for record in reader.records() {
             let record = record.map_err(|error| error.to_string())?;
             let line = record.position().map_or(0, csv::Position::line);
-            let t: f64 = record[time].parse().map_err(|_| format!("line {line}: `{}` is no time", &record[time]))?;
+            let t: f64 =
+                record[time].parse().map_err(|_| format!("line {line}: `{}` is no time", &record[time]))?;
             let place_of_agent = traces.agent(&record[agent]);
             if log {
                 traces.events.push((t, place_of_agent));

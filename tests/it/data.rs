@@ -45,7 +45,12 @@ fn batches(path: &Path) -> Vec<RecordBatch> {
     match path.extension().unwrap().to_str().unwrap() {
         "arrows" => StreamReader::try_new(file, None).unwrap().map(Result::unwrap).collect(),
         "arrow" => FileReader::try_new(file, None).unwrap().map(Result::unwrap).collect(),
-        _ => ParquetRecordBatchReaderBuilder::try_new(file).unwrap().build().unwrap().map(Result::unwrap).collect(),
+        _ => ParquetRecordBatchReaderBuilder::try_new(file)
+            .unwrap()
+            .build()
+            .unwrap()
+            .map(Result::unwrap)
+            .collect(),
     }
 }
 
@@ -64,7 +69,9 @@ fn as_text(batches: &[RecordBatch]) -> String {
                     return String::new();
                 }
                 match column.data_type() {
-                    DataType::Float64 => hyc::base::number_text(column.as_primitive::<Float64Type>().value(row)),
+                    DataType::Float64 => {
+                        hyc::base::number_text(column.as_primitive::<Float64Type>().value(row))
+                    }
                     DataType::UInt32 => column.as_primitive::<UInt32Type>().value(row).to_string(),
                     DataType::Boolean => column.as_boolean().value(row).to_string(),
                     DataType::Utf8 => column.as_string::<i32>().value(row).to_string(),
@@ -131,7 +138,11 @@ fn a_killed_run_leaves_a_prefix_that_can_be_read() {
         if form == "csv" {
             let text = fs::read_to_string(&path).unwrap();
             let whole = text.rsplit_once('\n').unwrap().0;
-            assert!(whole.lines().all(|line| line.split(',').count() == 6), "{}", whole.lines().last().unwrap());
+            assert!(
+                whole.lines().all(|line| line.split(',').count() == 6),
+                "{}",
+                whole.lines().last().unwrap()
+            );
             continue;
         }
         let reader = StreamReader::try_new(File::open(&path).unwrap(), None).unwrap();
@@ -157,7 +168,11 @@ fn what_is_recorded_changes_no_event() {
     };
     let plain = events("");
     assert!(plain.len() > 200);
-    for setting in ["record Ball every 0.01 to \"a.arrows\"", "record Ball to \"a.parquet\"", "record Lamp every 0.7 to \"a.arrow\""] {
+    for setting in [
+        "record Ball every 0.01 to \"a.arrows\"",
+        "record Ball to \"a.parquet\"",
+        "record Lamp every 0.7 to \"a.arrow\"",
+    ] {
         assert_eq!(events(setting), plain, "{setting}");
     }
 }

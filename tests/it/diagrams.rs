@@ -56,7 +56,10 @@ fn the_diagram_has_every_mode_and_every_change() {
         assert!(arrows.contains(&arrow), "{arrow:?} in {arrows:?}");
     }
     assert_eq!(arrows.len(), expected.len());
-    assert_eq!(diagram.arrows.iter().find(|arrow| arrow.label.as_deref() == Some("again")).unwrap().actions, "x := 0");
+    assert_eq!(
+        diagram.arrows.iter().find(|arrow| arrow.label.as_deref() == Some("again")).unwrap().actions,
+        "x := 0"
+    );
     assert_eq!(diagram.boxes[place("Work.Fast")].lines, ["x' = 2", "tick: every 1 { x := x + 0.1 }"]);
     assert!(diagram.boxes[place("Work")].initial && diagram.boxes[place("Work.Slow")].initial);
     assert!(!diagram.boxes[place("Broken")].initial);

@@ -109,12 +109,20 @@ fn every_word_of_every_model_has_the_colour_of_what_it_is() {
             let mut at = 0;
             for part in outside.split_inclusive('"') {
                 let quoted = outside[..at].matches('"').count() % 2 == 1;
-                let words = part.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !quoted && !word.is_empty());
+                let words = part
+                    .split(|c: char| !c.is_alphanumeric() && c != '_')
+                    .filter(|word| !quoted && !word.is_empty());
                 for word in words.filter(|word| keywords.iter().any(|keyword| keyword == word)) {
-                    let place = at + part.match_indices(word).map(|(k, _)| k).find(|k| is_whole(part, *k, word)).unwrap();
+                    let place = at
+                        + part
+                            .match_indices(word)
+                            .map(|(k, _)| k)
+                            .find(|k| is_whole(part, *k, word))
+                            .unwrap();
                     let scope = found.iter().find(|(start, text, _)| *start == place && text == word);
                     let scope = scope.map(|(_, _, scope)| scope.as_str());
-                    let right = scope.is_some_and(|scope| is_of_keywords(scope) || scope == "support.function.hyc");
+                    let right =
+                        scope.is_some_and(|scope| is_of_keywords(scope) || scope == "support.function.hyc");
                     assert!(right, "{}: `{word}` is {scope:?} in {line}", path.display());
                     seen += 1;
                 }
@@ -127,14 +135,18 @@ fn every_word_of_every_model_has_the_colour_of_what_it_is() {
 
 fn is_whole(text: &str, at: usize, word: &str) -> bool {
     let part = |c: char| c.is_alphanumeric() || c == '_';
-    !text[..at].chars().next_back().is_some_and(part) && !text[at + word.len()..].chars().next().is_some_and(part)
+    !text[..at].chars().next_back().is_some_and(part)
+        && !text[at + word.len()..].chars().next().is_some_and(part)
 }
 
 #[test]
 fn parts_of_a_line_are_told_apart() {
     let patterns = patterns();
     let scopes = |line: &str| -> Vec<(String, String)> {
-        scoped(&patterns, line).into_iter().map(|(_, text, scope)| (text, scope.replace(".hyc", ""))).collect()
+        scoped(&patterns, line)
+            .into_iter()
+            .map(|(_, text, scope)| (text, scope.replace(".hyc", "")))
+            .collect()
     };
     let pair = |text: &str, scope: &str| (text.to_string(), scope.to_string());
     assert_eq!(
@@ -152,6 +164,9 @@ fn parts_of_a_line_are_told_apart() {
         ]
     );
     assert_eq!(scopes("mode Brake {")[1], pair("Brake", "entity.name.section"));
-    assert_eq!(scopes("x: real [m/s^2] = 1.5e-3")[..2], [pair("real", "support.type"), pair("[m/s^2]", "constant.other.unit")]);
+    assert_eq!(
+        scopes("x: real [m/s^2] = 1.5e-3")[..2],
+        [pair("real", "support.type"), pair("[m/s^2]", "constant.other.unit")]
+    );
     assert_eq!(scopes("cars[3]"), [pair("3", "constant.numeric")]);
 }

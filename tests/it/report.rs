@@ -27,7 +27,8 @@ fn a_page_holds_the_events_and_asks_for_nothing() {
     let path = model("bumper.hy");
     hyc(folder.path(), &["report", path.to_str().unwrap(), "-q"]);
     // the files that the model names are left alone
-    let files: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let files: Vec<_> =
+        fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(files, ["bumper.html"]);
     let page = fs::read_to_string(folder.path().join("bumper.html")).unwrap();
     hyc(folder.path(), &["run", path.to_str().unwrap(), "-q", "--events", "events.csv"]);
@@ -65,8 +66,15 @@ fn a_report_beside_a_run_changes_no_event() {
         let path = model(name);
         let path = path.to_str().unwrap();
         let quiet = ["run", path, "-q", "--until", "8"];
-        hyc(folder.path(), &[&quiet[..], &["-o", "a", "--events", "without.csv", "--final", "f1.csv"]].concat());
-        hyc(folder.path(), &[&quiet[..], &["-o", "b", "--events", "with.csv", "--final", "f2.csv", "--report", "r.html"]].concat());
+        hyc(
+            folder.path(),
+            &[&quiet[..], &["-o", "a", "--events", "without.csv", "--final", "f1.csv"]].concat(),
+        );
+        hyc(
+            folder.path(),
+            &[&quiet[..], &["-o", "b", "--events", "with.csv", "--final", "f2.csv", "--report", "r.html"]]
+                .concat(),
+        );
         let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
         assert!(read("without.csv").lines().count() > 1, "{name}");
         assert_eq!(read("without.csv"), read("with.csv"), "{name}");
@@ -77,15 +85,20 @@ fn a_report_beside_a_run_changes_no_event() {
 #[test]
 fn a_page_of_a_run_without_an_end_is_refused_with_what_to_type() {
     let folder = tempfile::tempdir().unwrap();
-    let text = "agent A { state x = 0  flow { x' = 1 }  when x >= 1 { stop } }\nsystem { a = A() }\nrun { }\n";
+    let text =
+        "agent A { state x = 0  flow { x' = 1 }  when x >= 1 { stop } }\nsystem { a = A() }\nrun { }\n";
     fs::write(folder.path().join("a.hy"), text).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_hyc")).args(["report", "a.hy"]).current_dir(folder.path()).output().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_hyc"))
+        .args(["report", "a.hy"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("--until T"));
 }
 
 /// What a browser is asked to do on the page; the answers come as JSON in a `pre`.
-const ASK: &str = r#"
+const ASK: &str = r##"
 <script>
 addEventListener("load", () => setTimeout(async () => {
   const $ = id => document.getElementById(id), wait = ms => new Promise(done => setTimeout(done, ms)), said = {};
@@ -119,7 +132,7 @@ addEventListener("load", () => setTimeout(async () => {
   $("verdict").textContent = JSON.stringify(said);
 }, 100));
 </script>
-</body>"#;
+</body>"##;
 
 /// Before all else: what goes wrong is noted.
 const LISTEN: &str = r#"<head>
@@ -134,7 +147,9 @@ console.error = (...words) => errors.push(words.join(" "));
 fn browser() -> Option<String> {
     let named = std::env::var("HYC_CHROMIUM").ok();
     let known = ["chromium", "chromium-browser", "google-chrome", "chrome"].map(String::from);
-    let runs = |name: &String| Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success());
+    let runs = |name: &String| {
+        Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success())
+    };
     named.into_iter().chain(known).find(runs)
 }
 
@@ -160,7 +175,8 @@ fn asked(name: &str, words: &[&str]) -> Option<Value> {
         .unwrap();
     let dom = String::from_utf8_lossy(&output.stdout);
     let verdict = dom.split("<pre id=\"verdict\">").nth(1);
-    let verdict = verdict.unwrap_or_else(|| panic!("no verdict: {}", String::from_utf8_lossy(&output.stderr)));
+    let verdict =
+        verdict.unwrap_or_else(|| panic!("no verdict: {}", String::from_utf8_lossy(&output.stderr)));
     let text = verdict.split("</pre>").next().unwrap();
     let text = text.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&");
     Some(serde_json::from_str(&text).unwrap())
@@ -168,15 +184,23 @@ fn asked(name: &str, words: &[&str]) -> Option<Value> {
 
 #[test]
 fn the_page_works_in_a_browser() {
-    for (name, words, n_charts) in [("bumper.hy", &[][..], 3), ("highway.hy", &["--until", "30"][..], 3), ("ball.hy", &[][..], 2)] {
+    for (name, words, n_charts) in
+        [("bumper.hy", &[][..], 3), ("highway.hy", &["--until", "30"][..], 3), ("ball.hy", &[][..], 2)]
+    {
         let Some(said) = asked(name, words) else { return };
         let number = |key: &str| said[key].as_f64().unwrap_or_else(|| panic!("{name}: no {key} in {said}"));
         assert_eq!(said["errors"], serde_json::json!([]), "{name}: {said}");
         assert_eq!(said["requests"], serde_json::json!([]), "{name}: {said}");
         assert!(number("colours") > 10.0 && number("moved") > 50.0, "{name}: {said}");
         assert_eq!(number("charts"), f64::from(n_charts), "{name}: {said}");
-        assert!(number("rows") > 5.0 && number("found") > 0.0 && number("found") < number("rows"), "{name}: {said}");
-        assert!(said["jumped"] == true && said["marked"] == said["clicked"] && number("next") > 0.0, "{name}: {said}");
+        assert!(
+            number("rows") > 5.0 && number("found") > 0.0 && number("found") < number("rows"),
+            "{name}: {said}"
+        );
+        assert!(
+            said["jumped"] == true && said["marked"] == said["clicked"] && number("next") > 0.0,
+            "{name}: {said}"
+        );
         assert!(number("played") > 0.0 && said["ended"] == true && said["dark"] == "dark", "{name}: {said}");
     }
 }
