@@ -1,14 +1,11 @@
 //! A model's text as HTML, with what the words are marked: comments, strings, numbers, units, keywords.
 
 use super::modes_svg::escaped;
-
-/// The grammar of the language: its keywords are those rules that begin with `kw_`.
-const GRAMMAR: &str = include_str!("../../grammar/hy.pest");
+use crate::syntax::keywords;
 
 /// The text in a `pre`.
 pub(super) fn highlighted(text: &str) -> String {
-    let keywords: Vec<&str> =
-        GRAMMAR.lines().filter_map(|line| line.strip_prefix("kw_")?.split('"').nth(1)).collect();
+    let keywords = keywords();
     let mut html = String::from("<pre>");
     let mut rest = text;
     let mut before = Class::Other;
@@ -54,7 +51,7 @@ impl Class {
 }
 
 /// The length of what comes first, and what it is; `before` is what stood before it.
-fn token(text: &str, before: Class, keywords: &[&str]) -> (usize, Class) {
+fn token(text: &str, before: Class, keywords: &[String]) -> (usize, Class) {
     let length = |fits: &dyn Fn(char) -> bool| text.find(|c| !fits(c)).unwrap_or(text.len());
     let first = text.chars().next().unwrap_or(' ');
     if text.starts_with("//") {
@@ -82,7 +79,7 @@ fn token(text: &str, before: Class, keywords: &[&str]) -> (usize, Class) {
         let end = length(&|c| c.is_alphanumeric() || c == '_');
         let class = match &text[..end] {
             "real" | "int" | "bool" => Class::Type,
-            word if keywords.contains(&word) => Class::Keyword,
+            word if keywords.iter().any(|keyword| keyword == word) => Class::Keyword,
             _ => Class::Other,
         };
         return (end, class);

@@ -1,12 +1,13 @@
 //! Boxes and arrows laid out in layers, from top to bottom, after K. Sugiyama, S. Tagawa and M. Toda, 1981.
 //!
-//! Arrows that would close a circle are turned round; a box lies below all from which an arrow comes. Every arrow goes
+//! Arrows that would close a circle are turned round, and those to the first box, which lies on top; all others lie below those
+//! from which an arrow comes. Every arrow goes
 //! through a place of its own in each layer between, and its text has one: nothing lies upon anything else.
 
 /// Space between two neighbours of a layer.
 const GAP_X: f64 = 26.0;
 /// Space between two layers.
-const GAP_Y: f64 = 18.0;
+const GAP_Y: f64 = 22.0;
 /// How often the layers are put in order and moved.
 const SWEEPS: usize = 24;
 
@@ -52,7 +53,7 @@ pub fn lay_out(sizes: &[Size], edges: &[Edge]) -> Layout {
     web.layout(sizes, edges, &reversed)
 }
 
-/// Which edges close a circle, as a walk in depth from the first box finds them.
+/// Which edges close a circle, as a walk in depth from the first box finds them, or lead to the first box.
 fn reversed(n: usize, edges: &[Edge]) -> Vec<bool> {
     let mut reversed = vec![false; edges.len()];
     // 0: not seen, 1: on the way, 2: done
@@ -76,6 +77,10 @@ fn reversed(n: usize, edges: &[Edge]) -> Vec<bool> {
                 _ => {}
             }
         }
+    }
+    // the first box stands on top
+    for (edge, reversed) in edges.iter().zip(&mut reversed) {
+        *reversed |= edge.to == 0;
     }
     reversed
 }

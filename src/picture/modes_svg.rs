@@ -14,6 +14,8 @@ const TITLE: f64 = 22.0;
 const TITLE_ADVANCE: f64 = 8.4;
 /// Between the border of a box and what is inside.
 const PAD: f64 = 12.0;
+/// Room for the mark of an initial mode.
+const MARK: f64 = 12.0;
 /// Characters on a line, lines of a condition or of a list of actions.
 const WRAP: usize = 34;
 const LINES_MAX: usize = 4;
@@ -194,7 +196,7 @@ impl<'a> Picture<'a> {
         let title = shown.name.chars().count() as f64 * TITLE_ADVANCE;
         let longest = frame.lines.iter().map(|line| line.chars().count()).max().unwrap_or(0) as f64 * ADVANCE;
         let head = TITLE + frame.lines.len() as f64 * LINE + if frame.lines.is_empty() { 4.0 } else { 8.0 };
-        let inner = if sizes.is_empty() { 0.0 } else { layout.height + 2.0 * PAD + 4.0 };
+        let inner = if sizes.is_empty() { 0.0 } else { layout.height + 2.0 * PAD + MARK };
         let frame = &mut self.frames[place];
         frame.size = Size { width: title.max(longest).max(layout.width) + 2.0 * PAD, height: head + inner };
         frame.head = head;
@@ -228,7 +230,7 @@ impl<'a> Picture<'a> {
     /// The inside's corner: what is laid out stands in the middle.
     fn inside_of(&self, place: usize, (x, y): Point) -> Point {
         let frame = &self.frames[place];
-        (x + (frame.size.width - frame.layout.width) / 2.0, y + frame.head + PAD + 4.0)
+        (x + (frame.size.width - frame.layout.width) / 2.0, y + frame.head + PAD + MARK)
     }
 
     fn draw_box(&self, svg: &mut String, place: usize, (x, y): Point) {
@@ -254,10 +256,10 @@ impl<'a> Picture<'a> {
             );
         }
         if shown.initial {
-            let (x, y) = (x + 14.0, y - 10.0);
+            let (x, y) = (x + 14.0, y - 16.0);
             put(svg, format_args!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3.5\"/>"));
-            put(svg, format_args!("<path d=\"M{x:.1} {y:.1}v5\"/>"));
-            head(svg, (x, y + 10.0), 1.0);
+            put(svg, format_args!("<path d=\"M{x:.1} {y:.1}v9\"/>"));
+            head(svg, (x, y + 16.0), 1.0);
         }
         text(svg, "title", (x + PAD, y + 16.0), &shown.name);
         for (k, line) in frame.lines.iter().enumerate() {

@@ -53,7 +53,7 @@ pub struct Shown {
 pub enum Varies {
     /// By flow or by events.
     InTime,
-    /// Only from agent to agent.
+    /// Only from agent to agent; a whole number.
     AmongAgents,
 }
 
@@ -124,6 +124,7 @@ fn column(recording: &Recording<'_>, k: usize, shown: &Shown) -> Value {
         "label": label,
         "length": length,
         "chart": shown.varies == Varies::InTime,
+        "whole": shown.varies == Varies::AmongAgents,
         "values": STANDARD.encode(values.flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>()),
     })
 }

@@ -153,7 +153,8 @@ where
 const INK: RGBColor = RGBColor(0x1b, 0x1f, 0x24);
 const FAINT: RGBColor = RGBColor(0x59, 0x63, 0x6e);
 const LINE: RGBColor = RGBColor(0xe3, 0xe7, 0xeb);
-const LEFT: u32 = 92;
+const LEFT: u32 = 100;
+const MARGIN: u32 = 16;
 
 fn rgb([red, green, blue]: Colour) -> RGBColor {
     RGBColor(red, green, blue)
@@ -235,7 +236,8 @@ where
         .margin_right(18)
         .margin_top(8)
         .x_label_area_size(if last { 40 } else { 22 })
-        .y_label_area_size(LEFT)
+        .margin_left(MARGIN)
+        .y_label_area_size(LEFT - MARGIN)
         .build_cartesian_2d(span.clone(), range)?;
     mesh(&mut chart, if last { "time, s" } else { "" }, &traces.columns[column])?;
     for (agent, trace) in traces.agents.iter().enumerate() {
@@ -295,7 +297,8 @@ where
         .margin_right(18)
         .margin_top(4)
         .x_label_area_size(44)
-        .y_label_area_size(LEFT)
+        .margin_left(MARGIN)
+        .y_label_area_size(LEFT - MARGIN)
         .build_cartesian_2d(span.clone(), n as f64..0.0)?;
     chart
         .configure_mesh()
@@ -374,7 +377,8 @@ where
         .margin_right(if named { 148 } else { 18 })
         .margin_top(8)
         .x_label_area_size(44)
-        .y_label_area_size(LEFT)
+        .margin_left(MARGIN)
+        .y_label_area_size(LEFT - MARGIN)
         .build_cartesian_2d(xs.clone(), ys)?;
     mesh(&mut chart, &traces.columns[across], &traces.columns[up])?;
     for (agent, trace) in traces.agents.iter().enumerate() {

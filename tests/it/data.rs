@@ -26,7 +26,7 @@ agent Lamp {
   mode On { let glow = time/2  after 0.2 -> Off }
 }
 system { a = Ball(h = 1, next = b)  b = Ball(h = 2, next = a)  lamp = Lamp() }
-run { until 1.5  record Ball, Lamp every 0.125 to \"out.csv\"  events to \"events.csv\" }
+run { until 1.5  record Ball, Ball.next, Ball.high, Lamp every 0.125 to \"out.csv\"  events to \"events.csv\" }
 ";
 
 fn run(folder: &Path, model: &str, words: &[&str]) {
@@ -91,7 +91,10 @@ fn every_form_of_a_table_holds_what_the_csv_does() {
     run(folder, MIXED, &["--final", "last.csv"]);
     let csv = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
     let (rows, events, last) = (csv("out.csv"), csv("events.csv"), csv("last.csv"));
-    assert!(rows.contains(",true,") && rows.contains(",b") && events.lines().count() > 5, "{rows}{events}");
+    assert!(
+        rows.contains(",true,") && rows.contains(",b,") && rows.contains(",,") && events.lines().count() > 5,
+        "{rows}{events}"
+    );
     for form in ["arrows", "arrow", "parquet"] {
         let model = MIXED.replace("csv", form);
         run(folder, &model, &["--final", &format!("last.{form}")]);
@@ -162,7 +165,8 @@ fn a_killed_run_leaves_a_prefix_that_can_be_read() {
 fn what_is_recorded_changes_no_event() {
     let folder = tempfile::tempdir().unwrap();
     let events = |setting: &str| {
-        let model = MIXED.replace("record Ball, Lamp every 0.125 to \"out.csv\"", setting);
+        let model =
+            MIXED.replace("record Ball, Ball.next, Ball.high, Lamp every 0.125 to \"out.csv\"", setting);
         run(folder.path(), &model, &[]);
         fs::read(folder.path().join("events.csv")).unwrap()
     };
@@ -190,22 +194,14 @@ fn the_snippets_for_python_run_and_agree() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
+    let ball = include_str!("../../models/ball.hy");
     for form in ["csv", "arrows", "arrow", "parquet"] {
-        run(folder.path(), &BALL.replace("FORM", form), &[]);
+        let model = ball.replace("to \"balls.csv\"", "to \"balls.FORM\" events to \"bounces.FORM\"");
+        assert!(model.contains("bounces"));
+        run(folder.path(), &model.replace("FORM", form), &[]);
     }
     for snippet in snippets {
         let output = Command::new(&python).args(["-c", snippet]).current_dir(folder.path()).output().unwrap();
         assert!(output.status.success(), "{snippet}\n{}", String::from_utf8_lossy(&output.stderr));
     }
 }
-
-/// The model that the page of data speaks of.
-const BALL: &str = "\
-agent Ball(h: real) {
-  state x = h, v = 0
-  flow { x' = v  v' = -9.81 }
-  bounce: when x <= 0 { v := -0.8*v }
-}
-system { rubber = Ball(h = 1)  steel = Ball(h = 2) }
-run { until 2.5  record Ball every 0.01 to \"balls.FORM\"  events to \"bounces.FORM\" }
-";

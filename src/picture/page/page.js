@@ -81,9 +81,9 @@ function zoom(factor, at) {
   view.x = x - (px - width/2)/view.sx; view.y = y + (py - height/2)/view.sy;
   drawPlane();
 }
-function ticks(low, high, n) {
+function ticks(low, high, n, least = 0) {
   const rough = (high - low)/n, power = 10**Math.floor(Math.log10(rough)), f = rough/power;
-  const step = power*(f < 1.5 ? 1 : f < 3.5 ? 2 : f < 7.5 ? 5 : 10), list = [];
+  const step = Math.max(power*(f < 1.5 ? 1 : f < 3.5 ? 2 : f < 7.5 ? 5 : 10), least), list = [];
   for (let x = Math.ceil(low/step)*step; x <= high; x += step) list.push(+x.toPrecision(12));
   return list;
 }
@@ -115,10 +115,10 @@ function drawPlane() {
   const left = view.x - box.width/2/view.sx, right = view.x + box.width/2/view.sx;
   const low = view.y - box.height/2/view.sy, high = view.y + box.height/2/view.sy;
   pen.strokeStyle = line; pen.fillStyle = faint;
-  for (const x of ticks(left, right, box.width/90)) {
+  for (const x of ticks(left, right, box.width/90, data.columns[across]?.whole ? 1 : 0)) {
     pen.beginPath(); pen.moveTo(X(x), 0); pen.lineTo(X(x), box.height); pen.stroke(); pen.fillText(number(x), X(x) + 3, box.height - 4);
   }
-  for (const y of ticks(low, high, box.height/70)) {
+  for (const y of ticks(low, high, box.height/70, data.columns[up]?.whole ? 1 : 0)) {
     pen.beginPath(); pen.moveTo(0, Y(y)); pen.lineTo(box.width, Y(y)); pen.stroke(); pen.fillText(number(y), 3, Y(y) - 3);
   }
   if (!nTimes) return;
@@ -192,7 +192,7 @@ function select(agents) {
     const [low, high] = agents.length ? rows.flat().reduce(([a, b], x) => x == null ? [a, b] : [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]) : [0, 1];
     const pad = (high - low)*0.06 || 0.5;
     charts.push(new uPlot({
-      width, height: Math.max(120, Math.min(220, 640/shown.length)), legend: { show: agents.length <= 8, live: true },
+      width, height: Math.max(120, Math.min(220, 640/shown.length)), legend: { show: agents.length <= 8 && (c === shown.at(-1) || agents.length === 1), live: true },
       cursor: { sync: { key: "time" }, drag: { x: true, y: false } },
       scales: { x: { time: false }, y: { range: [low - pad, high + pad] } },
       axes: [axis({ size: 34, values: (_, list) => list.map(number) }), axis({ label: data.columns[c].label, labelSize: 18, values: (_, list) => list.map(number) })],
@@ -367,7 +367,8 @@ function pick(px, py) {
 }
 document.addEventListener("keydown", event => {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
-  if (event.target.matches("input[type=search], select, dialog *")) return;
+  const at = event.target instanceof Element ? event.target : document.body;
+  if (at.matches("input[type=search], select, dialog *")) return;
   const k = sampleAt(now), step = event.shiftKey ? 10 : 1;
   const actions = {
     " ": () => setPlaying(!playing), ArrowRight: () => setTime(times[Math.min(k + step, nTimes - 1)]),
@@ -376,7 +377,7 @@ document.addEventListener("keydown", event => {
     f: () => $("find").focus(), d: () => $("theme").click(), "?": () => $("keys").showModal(),
   };
   const action = actions[event.key];
-  if (!action || (event.key === " " && event.target.matches("button"))) return;
+  if (!action || (event.key === " " && at.matches("button"))) return;
   event.preventDefault();
   if (event.key.startsWith("Arrow")) setPlaying(false);
   action();
