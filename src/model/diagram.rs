@@ -2,7 +2,7 @@
 //!
 //! Texts of conditions and equations are those of the source. A transition that leads nowhere is a line in its mode's box.
 
-use super::ir::{Action, AgentType, Mode, ModeId, Model, Transition, TypeId};
+use super::ir::{Action, AgentType, Destination, Inside, Mode, ModeId, Model, Transition, TypeId};
 use crate::base::SourceMap;
 
 /// The modes of one agent type.
@@ -42,7 +42,7 @@ pub struct Arrow {
     pub to: usize,
     /// Its name, if it has one.
     pub label: Option<String>,
-    /// When it fires, as the source says it.
+    /// When it fires, as the source says it; `(history)` behind it if it leads to the submode that was active last.
     pub trigger: String,
     /// What it does besides, as the source says it; empty if nothing.
     pub actions: String,
@@ -112,7 +112,7 @@ fn arrows_of_interactions(model: &Model, ty: TypeId, sources: &SourceMap) -> Vec
     arrows
 }
 
-fn of_interaction(transition: &Transition, target: ModeId, sources: &SourceMap) -> Arrow {
+fn of_interaction(transition: &Transition, target: Destination, sources: &SourceMap) -> Arrow {
     let text = Written::read(sources.text(transition.span));
     Arrow {
         label: Some(transition.label.clone()),
@@ -121,7 +121,7 @@ fn of_interaction(transition: &Transition, target: ModeId, sources: &SourceMap) 
     }
 }
 
-fn find_gotos(actions: &[Action], found: &mut Vec<(usize, ModeId)>) {
+fn find_gotos(actions: &[Action], found: &mut Vec<(usize, Destination)>) {
     for action in actions {
         match action {
             Action::Goto { participant, target, .. } => found.push((*participant, *target)),
@@ -159,9 +159,12 @@ impl Written {
         Self { label, trigger: trigger.to_string(), actions: actions.to_string() }
     }
 
-    fn arrow(self, from: ModeId, to: ModeId) -> Arrow {
-        let Self { label, trigger, actions } = self;
-        Arrow { from: from.index(), to: to.index(), label, trigger, actions }
+    fn arrow(self, from: ModeId, to: Destination) -> Arrow {
+        let Self { label, mut trigger, actions } = self;
+        if to.inside == Inside::History {
+            trigger.push_str(" (history)");
+        }
+        Arrow { from: from.index(), to: to.mode.index(), label, trigger, actions }
     }
 
     fn line(self) -> String {

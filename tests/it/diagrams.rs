@@ -78,6 +78,26 @@ fn both_forms_name_everything() {
 }
 
 #[test]
+fn modes_in_modes_and_their_history_are_shown() {
+    let text = "agent Car { state x = 0  flow { x' = 1 }
+          initial mode Drive {
+            jam: when x >= 5 -> Brake
+            initial mode Cruise { when x >= 1 -> Follow }
+            mode Follow { when x >= 2 -> Cruise }
+          }
+          mode Brake { after 1 -> Drive.history }
+        }
+        system { car = Car() }
+        run { until 1 }";
+    let diagram = of(Case::new(text)).remove(0);
+    let place = |path: &str| diagram.boxes.iter().position(|shown| shown.path == path).unwrap();
+    assert_eq!(diagram.boxes[place("Drive.Follow")].parent, Some(place("Drive")));
+    let arrow = |from: &str| diagram.arrows.iter().find(|arrow| arrow.from == place(from)).unwrap();
+    assert_eq!((arrow("Drive").to, arrow("Drive").label.as_deref()), (place("Brake"), Some("jam")));
+    assert_eq!((arrow("Brake").to, arrow("Brake").trigger.as_str()), (place("Drive"), "after 1 (history)"));
+}
+
+#[test]
 fn modes_lie_inside_the_modes_that_they_belong_to() {
     let shown = |name: &str, parent: Option<usize>, children: &[usize], initial: bool| ModeBox {
         name: name.into(),
