@@ -48,3 +48,4 @@ mod diagrams;
 mod editors;
 mod data;
 mod report;
+mod plots;
