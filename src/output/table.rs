@@ -22,7 +22,7 @@ pub(super) struct Table {
 
 enum Form {
     Text(CommaSeparated),
-    Columns(Columnar),
+    Columns(Box<Columnar>),
 }
 
 impl Table {
@@ -31,7 +31,9 @@ impl Table {
         let Sink { name, writer } = sink;
         let form = match layout_of(&name) {
             None => Ok(Form::Text(CommaSeparated::new(writer, columns))),
-            Some(layout) => Columnar::new(layout, writer, columns).map(Form::Columns),
+            Some(layout) => {
+                Columnar::new(layout, writer, columns).map(|table| Form::Columns(Box::new(table)))
+            }
         };
         let form = form.map_err(|error| named(&name, &error))?;
         Ok(Self { name, form })

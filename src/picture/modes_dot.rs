@@ -35,7 +35,7 @@ impl Dot {
 
     fn cluster(&mut self, number: usize, diagram: &Diagram, place: usize, depth: usize) {
         let shown = &diagram.boxes[place];
-        let label = [&[shown.name.clone()], &shown.lines[..]].concat().join("\n");
+        let label = [std::slice::from_ref(&shown.name), &shown.lines].concat().join("\n");
         if shown.children.is_empty() {
             let colour = hex(colour(self.colour));
             self.colour += 1;

@@ -40,8 +40,8 @@ function setPlaying(on) {
 }
 function frame(stamp) {
   if (!playing) return;
-  const t = now + (stamp - last)/1000*speed;
-  last = stamp;
+  const t = now + Math.max(stamp - last, 0)/1000*speed;
+  last = Math.max(stamp, last);
   setTime(t);
   if (t >= end) setPlaying(false); else requestAnimationFrame(frame);
 }
@@ -261,7 +261,7 @@ function list() {
   $("count").textContent = `(${listed.length === events.length ? of : listed.length + " of " + of})`;
   show(0);
 }
-let first = 0;
+let first = 0, chosen = -1;
 function show(from) {
   first = Math.max(0, Math.min(from, listed.length - most));
   const body = document.createElement("tbody");
@@ -278,7 +278,9 @@ function markEvent() {
   const place = eventsBefore(now) - 1;
   let low = 0, high = listed.length;
   while (low < high) { const middle = (low + high) >> 1; if (listed[middle] <= place) low = middle + 1; else high = middle; }
-  const at = low - 1;
+  // of several events at one instant the one that was jumped to
+  const asked = events[chosen]?.[0] === now ? listed.indexOf(chosen) : -1;
+  const at = asked >= 0 ? asked : low - 1;
   document.querySelector("#events tr.now")?.classList.remove("now");
   if (at < 0) return;
   if (at < first || at >= first + most) show(at - most/2);
@@ -289,13 +291,15 @@ function markEvent() {
 function jump(e) {
   setPlaying(false);
   const event = events[e];
+  chosen = e;
   if (!selected.includes(event[2])) { $("agent").value = event[2]; select([event[2]].concat(event[3] >= 0 ? [event[3]] : [])); }
   setTime(event[0]);
 }
 function neighbour(step) {
-  const eps = 1e-12*(1 + Math.abs(now));
-  if (step > 0) { const e = listed.find(e => events[e][0] > now + eps); if (e !== undefined) jump(e); }
-  else { const e = listed.findLast(e => events[e][0] < now - eps); if (e !== undefined) jump(e); }
+  // from the event that was jumped to, else from the time
+  const at = events[chosen]?.[0] === now ? listed.indexOf(chosen) : -1;
+  const e = at >= 0 ? listed[at + step] : step > 0 ? listed.find(e => events[e][0] > now) : listed.findLast(e => events[e][0] < now);
+  if (e !== undefined) jump(e);
 }
 
 // ---- the page
