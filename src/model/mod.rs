@@ -51,8 +51,10 @@ mod consistency;
 mod origin;
 mod formula;
 mod dump;
+mod diagram;
 mod lint;
 
+pub use diagram::{Arrow, Diagram, ModeBox, diagrams};
 pub use dump::dump;
 pub use ir::Model;
 

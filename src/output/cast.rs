@@ -1,5 +1,7 @@
 //! The names that tables print: of agents, by number, and of the columns of their types.
 
+use super::columns::Kind;
+
 /// All names of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cast {
@@ -16,11 +18,13 @@ pub struct TypeColumns {
     pub states: Vec<String>,
     /// Names of the discrete variables.
     pub discretes: Vec<String>,
+    /// What the discrete variables hold.
+    pub discrete_kinds: Vec<Kind>,
 }
 
 impl Cast {
     /// The path of an agent; one that the list does not know is named by its number.
-    pub(super) fn agent(&self, number: usize) -> std::borrow::Cow<'_, str> {
+    pub fn agent(&self, number: usize) -> std::borrow::Cow<'_, str> {
         match self.agents.get(number) {
             Some(path) => path.as_str().into(),
             None => format!("#{number}").into(),

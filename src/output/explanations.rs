@@ -14,7 +14,7 @@ use crate::runtime::observe::{Cause, Compared, Explanation, Undecided, WhyUndeci
 pub(super) struct Explanations<'a> {
     sources: &'a SourceMap,
     name: String,
-    writer: BufWriter<Box<dyn Write>>,
+    writer: BufWriter<Box<dyn Write + Send>>,
 }
 
 impl<'a> Explanations<'a> {

@@ -1,9 +1,7 @@
 //! Tables as text: each column, each kind of cell, numbers that read back, failures that name their file.
 
-use std::cell::RefCell;
 use std::io::{self, Write};
-use std::rc::Rc;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock, Mutex};
 
 use super::*;
 use crate::base::{Diagnostic, SourceMap, write_number};
@@ -13,11 +11,11 @@ use crate::runtime::observe::{
 
 /// Bytes that a test can look at afterwards.
 #[derive(Clone, Default)]
-struct Page(Rc<RefCell<Vec<u8>>>);
+struct Page(Arc<Mutex<Vec<u8>>>);
 
 impl Write for Page {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.borrow_mut().extend_from_slice(bytes);
+        self.0.lock().unwrap().extend_from_slice(bytes);
         Ok(bytes.len())
     }
     fn flush(&mut self) -> io::Result<()> {
@@ -30,7 +28,7 @@ impl Page {
         Sink { name: "page".into(), writer: Box::new(self.clone()) }
     }
     fn text(&self) -> String {
-        String::from_utf8(self.0.borrow().clone()).unwrap()
+        String::from_utf8(self.0.lock().unwrap().clone()).unwrap()
     }
 }
 
@@ -51,8 +49,16 @@ fn cast() -> Cast {
     Cast {
         agents: names(&["fast", "cars[0]", "odd, name"]),
         types: vec![
-            TypeColumns { states: names(&["x", "y"]), discretes: names(&["lane"]) },
-            TypeColumns { states: names(&["y"]), discretes: names(&["on"]) },
+            TypeColumns {
+                states: names(&["x", "y"]),
+                discretes: names(&["lane"]),
+                discrete_kinds: vec![Kind::Number],
+            },
+            TypeColumns {
+                states: names(&["y"]),
+                discretes: names(&["on"]),
+                discrete_kinds: vec![Kind::Bool],
+            },
         ],
     }
 }
@@ -108,7 +114,7 @@ fn an_event_is_one_row() {
         modes: Some(("Drive.Cruise", "Brake")),
     };
     tables.event(&bump).unwrap();
-    tables.flush().unwrap();
+    tables.finish().unwrap();
     assert_eq!(
         page.text(),
         "time,micro,transition,agent,other,from,to\n\
@@ -121,13 +127,18 @@ fn an_event_is_one_row() {
 fn each_record_has_its_table_and_each_kind_of_cell_its_form() {
     let (cast, first, second) = (cast(), Page::default(), Page::default());
     let mut tables = Tables::new(&cast);
-    tables.trajectory(first.sink(), &["x".into()]).unwrap();
-    let columns: Vec<String> = ["a", "b", "c", "d", "e"].map(String::from).into();
+    tables.trajectory(first.sink(), &[Column::new("x", Kind::Number)]).unwrap();
+    let kinds = [Kind::Number, Kind::Number, Kind::Bool, Kind::Text, Kind::Text];
+    let columns: Vec<Column> = ["a", "b", "c", "d", "e"]
+        .into_iter()
+        .zip(kinds)
+        .map(|(name, kind)| Column::new(name, kind))
+        .collect();
     tables.trajectory(second.sink(), &columns).unwrap();
     let cells = [Cell::Empty, Cell::Number(2.0), Cell::Bool(true), Cell::Agent(Some(1)), Cell::Agent(None)];
     let row = Row { time: 0.25, micro: 1, agent: 0, mode: "Spiral", cells: &cells };
     tables.sample(1, &row).unwrap();
-    tables.flush().unwrap();
+    tables.finish().unwrap();
     assert_eq!(first.text(), "time,micro,agent,mode,x\n");
     assert_eq!(second.text(), "time,micro,agent,mode,a,b,c,d,e\n0.25,1,fast,Spiral,,2,true,cars[0],none\n");
 }
@@ -143,7 +154,7 @@ fn final_states_of_several_types_share_columns_by_name() {
     let lamp =
         Last { time: 20.0, agent: 1, ty: 1, mode: "On", states: &[-0.5], discretes: &[Cell::Bool(false)] };
     tables.last(&lamp).unwrap();
-    tables.flush().unwrap();
+    tables.finish().unwrap();
     assert_eq!(page.text(), "time,agent,mode,x,y,lane,on\n20,fast,,1,2,3,\n20,cars[0],On,,-0.5,,false\n");
 }
 
@@ -204,6 +215,9 @@ fn report<'a>(cast: &'a Cast, outcome: &'a Outcome, files: &'a [String]) -> Repo
         functions: 4,
         instructions: 100,
         code_bytes: 2000,
+        busiest: &[],
+        compile_parts: &[],
+        writing_seconds: 0.0,
         compile_seconds: 0.0042,
         run_seconds: 1.5,
         files,
@@ -270,13 +284,23 @@ fn every_end_is_told() {
 fn a_summary_lists_what_fired_and_what_was_written() {
     let (cast, outcome) = (cast(), outcome(End::Until));
     let files = ["events.csv".to_string()];
+    let busiest = [("fast".to_string(), 6), ("cars[0]".to_string(), 1)];
+    let report = Report {
+        busiest: &busiest,
+        compile_parts: &[("reading", 0.0012), ("machine code", 0.003)],
+        writing_seconds: 0.25,
+        ..report(&cast, &outcome, &files)
+    };
     assert_eq!(
-        summary(&report(&cast, &outcome, &files)),
+        summary(&report),
         "models/cars.hy: ended at t = 12.5 s\n\
-         \x20 3 agents, 7 events, 40 steps (1 rejected), 0 right-hand sides\n\
-         \x20   Bump.pair  5\n\
-         \x20   Car.left   2\n\
-         \x20 compiled in 4.2 ms, ran in 1.50 s\n\
-         \x20 wrote events.csv\n"
+         \x20 3 agents, 7 events, 40 steps (1 rejected)\n\
+         \x20   Bump.pair  5  ########################\n\
+         \x20   Car.left   2  ##########\n\
+         \x20 busiest    fast (6 events), cars[0] (1 event)\n\
+         \x20 guards     evaluated 0 times at a point, 0 over an interval\n\
+         \x20 asserts    1 false, 2 times\n\
+         \x20 time       compiled in 4.2 ms (reading 1.2 ms, machine code 3.0 ms), ran in 1.50 s (250.0 ms of it writing)\n\
+         \x20 wrote      events.csv\n"
     );
 }

@@ -118,6 +118,7 @@ impl Engine<'_, '_> {
         let progress = Progress {
             time: self.cover().min(self.time_end),
             until: self.time_end,
+            agents: self.agents.len() as u64,
             events: self.n_events,
             steps: self.stepper.counts.steps,
         };

@@ -191,6 +191,8 @@ pub struct Progress {
     pub time: f64,
     /// The end of the run, s; infinite if none is set.
     pub until: f64,
+    /// How many agents there are.
+    pub agents: u64,
     /// Events so far.
     pub events: u64,
     /// Accepted steps so far.
