@@ -5,8 +5,10 @@ use rustc_hash::FxHashMap;
 use crate::base::{Arena, Diagnostic, Span};
 use crate::calculus::error::Error;
 use crate::calculus::graph::{Graph, NodeId};
-use crate::calculus::system::{AgentSystem, Column, Function, FunctionId, InteractionSystem, Layout, System};
-use crate::model::ir::{AgentType, Model, Type, Variable};
+use crate::calculus::system::{
+    AgentSystem, Column, Function, FunctionId, Initials, InteractionSystem, Layout, LinkSystem, System,
+};
+use crate::model::ir::{AgentType, Link, Model, Type, Variable};
 
 /// See the head of this file.
 pub struct Draft<'m> {
@@ -90,6 +92,10 @@ impl<'m> Draft<'m> {
     }
 }
 
+fn link(link: &Link) -> LinkSystem {
+    LinkSystem { name: link.name.clone(), required: link.required }
+}
+
 fn columns(ty: &AgentType) -> AgentSystem {
     let column = |v: &Variable| Column { name: v.name.clone(), scale: v.scale, boolean: v.ty == Type::Bool };
     AgentSystem {
@@ -104,9 +110,10 @@ fn columns(ty: &AgentType) -> AgentSystem {
         states: ty.states.iter().map(column).collect(),
         params: ty.params.iter().map(column).collect(),
         discretes: ty.discretes.iter().map(column).collect(),
-        links: ty.links.iter().map(|link| link.name.clone()).collect(),
+        links: ty.links.iter().map(link).collect(),
         lets: Vec::new(),
         declared: ty.declared.clone(),
+        initials: Initials::default(),
         modes: Vec::new(),
         transitions: Vec::new(),
     }

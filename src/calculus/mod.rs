@@ -30,6 +30,7 @@ mod guard;
 mod aggregate;
 mod kinks;
 mod flow;
+mod births;
 mod actions;
 mod symmetry;
 mod agents;
@@ -56,6 +57,7 @@ pub fn derive(model: &Model) -> Result<System, Vec<Diagnostic>> {
     agents::modes(&mut draft);
     agents::transitions(&mut draft);
     agents::lets(&mut draft);
+    births::initials(&mut draft);
     let mut interactions = agents::interactions(&mut draft);
     agents::number_declarations(&mut draft.types, &mut interactions);
     draft.finish(interactions).map(near::ranges)

@@ -17,6 +17,7 @@ pub use crate::calculus::layout::Layout;
 pub use crate::calculus::range::{Near, Range};
 pub use crate::calculus::relation::Relation;
 use crate::math::Scale;
+use crate::math::draw::Distribution;
 pub use crate::model::ir::{Aggregate, Block, Instance, Integrator, Population, Record, Run, VarRef};
 
 /// Names a [`Function`].
@@ -134,6 +135,43 @@ pub enum Slot {
     },
 }
 
+impl System {
+    /// All lists of actions of agents, with their types; then those of interactions.
+    pub fn action_lists(&self) -> impl Iterator<Item = &ActionList> {
+        let of_types = self.types.iter().flat_map(|ty| {
+            let modes = ty.modes.iter().flat_map(|mode| [&mode.entry, &mode.exit]);
+            modes.chain(ty.transitions.iter().map(|transition| &transition.actions))
+        });
+        let pairs = self.interactions.iter().flat_map(|interaction| &interaction.transitions);
+        of_types.chain(pairs.map(|pair| &pair.transition.actions))
+    }
+}
+
+impl ActionList {
+    /// All that makes agents.
+    pub fn births(&self) -> Vec<&Birth> {
+        let mut found = Vec::new();
+        add_births(&self.steps, &mut found);
+        found
+    }
+}
+
+fn add_births<'s>(steps: &'s [ActionStep], found: &mut Vec<&'s Birth>) {
+    for step in steps {
+        match step {
+            ActionStep::Create(birth) => found.push(birth),
+            ActionStep::If { then, otherwise, .. } => {
+                add_births(then, found);
+                add_births(otherwise, found);
+            }
+            ActionStep::Assign { .. }
+            | ActionStep::Goto { .. }
+            | ActionStep::Stop { .. }
+            | ActionStep::Destroy { .. } => {}
+        }
+    }
+}
+
 impl Slot {
     /// The agent type; of an aggregate that over which it goes.
     pub fn ty(&self) -> usize {
@@ -163,12 +201,14 @@ pub struct AgentSystem {
     pub params: Vec<Column>,
     /// Names of the discrete variables.
     pub discretes: Vec<Column>,
-    /// Names of the links.
-    pub links: Vec<String>,
+    /// The links.
+    pub links: Vec<LinkSystem>,
     /// Algebraic definitions, for recording.
     pub lets: Vec<LetSystem>,
     /// Recordable names in order of declaration.
     pub declared: Vec<(String, VarRef)>,
+    /// What its agents start with; empty if none of them are created during a run.
+    pub initials: Initials,
     /// The tree of modes, numbered as in the model; 0 is the root.
     pub modes: Vec<ModeSystem>,
     /// Transitions of all modes in order of declaration.
@@ -184,6 +224,15 @@ pub struct Column {
     pub scale: Scale,
     /// Whether it holds a boolean.
     pub boolean: bool,
+}
+
+/// A link of an agent type.
+#[derive(Clone, Debug)]
+pub struct LinkSystem {
+    /// Its name.
+    pub name: String,
+    /// A parameter of agent type: never none.
+    pub required: bool,
 }
 
 /// A `let`, computed when it is recorded.
@@ -533,6 +582,66 @@ pub enum ActionStep {
         /// Where it stands.
         span: Span,
     },
+    /// Makes an agent, at the end of the micro-step.
+    Create(Arc<Birth>),
+    /// Removes the agent in the slot, if there is one, at the end of the micro-step.
+    Destroy {
+        /// Who.
+        slot: usize,
+        /// Where it stands.
+        span: Span,
+    },
+}
+
+/// What the agents of a type start with, where they are not given anything else: what is declared, in an order in which each
+/// finds what it reads; parameters first.
+#[derive(Clone, Debug, Default)]
+pub struct Initials {
+    /// Reads the agent that is made, as far as it is.
+    pub frame: Frame,
+    /// What each variable starts with.
+    pub values: Vec<(VarRef, Source)>,
+}
+
+/// Where the value of a variable comes from when its agent is made.
+#[derive(Clone, Debug)]
+pub enum Source {
+    /// One output.
+    Number(FunctionId),
+    /// A random number.
+    Draw {
+        /// How it is distributed.
+        distribution: Distribution,
+        /// One output each.
+        parameters: Vec<FunctionId>,
+        /// Where it stands.
+        span: Span,
+    },
+}
+
+impl Source {
+    /// The functions that say what it is.
+    pub fn functions(&self) -> &[FunctionId] {
+        match self {
+            Source::Number(function) => std::slice::from_ref(function),
+            Source::Draw { parameters, .. } => parameters,
+        }
+    }
+}
+
+/// How an agent is made by an action.
+#[derive(Clone, Debug)]
+pub struct Birth {
+    /// Its type.
+    pub ty: usize,
+    /// The leaf mode it starts in.
+    pub mode: usize,
+    /// What it is given, by functions of the list's frame.
+    pub given: Vec<(VarRef, Source)>,
+    /// The links that it is given: number of the link, slot of the agent that it leads to; none: to nobody.
+    pub links: Vec<(usize, Option<usize>)>,
+    /// Where it stands.
+    pub span: Span,
 }
 
 /// An interaction of two agents.

@@ -6,7 +6,7 @@ use super::context::{
     AgentNames, Body, Context, Definition, Global, GlobalKind, Member, PairNames, Progress,
 };
 use super::error::{LimitError, NameError, TypeError};
-use super::ir::{AgentType, Interaction, Link, Mode, ModeId, Type, TypeId, Variable};
+use super::ir::{AgentType, Initials, Interaction, Link, Mode, ModeId, Type, TypeId, Variable};
 use super::types::{Quantity, Slot, Ty};
 use crate::base::{Arena, Span};
 use crate::syntax::ast::{self, AgentItem, BodyItem, Item, VariableKind};
@@ -104,6 +104,7 @@ impl<'a> Context<'a> {
             links: Vec::new(),
             lets: Vec::new(),
             declared: Vec::new(),
+            initials: Initials::default(),
             modes: Arena::from_iter([root]),
             transitions: Vec::new(),
         });

@@ -6,8 +6,7 @@ use std::fmt::Write;
 
 use super::formula::{Formulas, Names, number_text};
 use super::ir::{
-    Action, AgentType, Claim, Instance, Integrator, Interaction, Mode, ModeId, Model, ParamValue, Population,
-    Record, Run, Transition, Trigger, Type, VarRef, Variable,
+    Action, AgentType, Claim, Create, Given, Instance, Integrator, Interaction, Mode, ModeId, Model, ParamValue, Population, Record, Run, Transition, Trigger, Type, VarRef, Variable,
 };
 
 /// How many agents of a block are written.
@@ -200,8 +199,38 @@ impl<'m> Writer<'m> {
                     let reason = reason.as_ref().map_or(String::new(), |text| format!(" \"{text}\""));
                     self.line(depth, &format!("stop{reason}"));
                 }
+                Action::Create(create) => self.creation(create, names, depth),
+                Action::Destroy { agent, .. } => {
+                    let agent = self.formulas.text(*agent, names);
+                    self.line(depth, &format!("destroy {agent}"));
+                }
             }
         }
+    }
+
+    fn creation(&mut self, create: &Create, names: Names, depth: usize) {
+        let ty = &self.model.types[create.ty];
+        let mut parts = Vec::new();
+        let given = [(&ty.params, &create.params), (&ty.states, &create.states)];
+        for (variables, given) in given.into_iter().chain([(&ty.discretes, &create.discretes)]) {
+            for (variable, given) in variables.iter().zip(given) {
+                let Some(given) = given else { continue };
+                let texts = given.exprs().into_iter().map(|id| self.formulas.text(id, names));
+                let texts = texts.collect::<Vec<_>>().join(", ");
+                parts.push(match given {
+                    Given::Value(_) => format!("{} = {texts}", variable.name),
+                    Given::Draw(draw) => format!("{} ~ {}({texts})", variable.name, draw.distribution.name()),
+                });
+            }
+        }
+        for (link, agent) in ty.links.iter().zip(&create.links) {
+            if let Some(agent) = agent {
+                parts.push(format!("{} = {}", link.name, self.formulas.text(*agent, names)));
+            }
+        }
+        let path = &ty.modes[create.mode].path;
+        let mode = if path.is_empty() { String::new() } else { format!(" in {path}") };
+        self.line(depth, &format!("create {}({}){mode}", ty.name, parts.join(", ")));
     }
 
     fn interaction(&mut self, item: &'m Interaction) {

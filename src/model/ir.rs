@@ -4,6 +4,7 @@
 //! without agents in it is already a number. Values are SI. Modes form a tree whose root (number 0) is the agent itself.
 
 use crate::base::{Arena, Idx, Span};
+use crate::math::draw::Distribution;
 use crate::math::{Op, Scale};
 pub use crate::model::applied::Operands;
 pub use crate::model::integrator::Integrator;
@@ -43,6 +44,38 @@ pub struct Model {
     pub run: Run,
     /// What it may ask for.
     pub limits: Limits,
+}
+
+impl Model {
+    /// All lists of actions of agents: those of modes, then those of transitions; then those of interactions.
+    pub fn action_lists(&self) -> impl Iterator<Item = &[Action]> {
+        let of_types = self.types.iter().flat_map(|ty| {
+            let modes = ty.modes.iter().flat_map(|mode| [&mode.entry[..], &mode.exit[..]]);
+            modes.chain(ty.transitions.iter().map(|transition| &transition.actions[..]))
+        });
+        let pairs = self.interactions.iter().flat_map(|interaction| &interaction.transitions);
+        of_types.chain(pairs.map(|transition| &transition.actions[..]))
+    }
+
+    /// All that creates agents, in the order of [`Model::action_lists`].
+    pub fn creations(&self) -> Vec<&Create> {
+        let mut found = Vec::new();
+        self.action_lists().for_each(|list| add_creations(list, &mut found));
+        found
+    }
+}
+
+fn add_creations<'m>(list: &'m [Action], found: &mut Vec<&'m Create>) {
+    for action in list {
+        match action {
+            Action::Create(create) => found.push(create),
+            Action::If { then, otherwise, .. } => {
+                add_creations(then, found);
+                add_creations(otherwise, found);
+            }
+            Action::Assign { .. } | Action::Goto { .. } | Action::Stop { .. } | Action::Destroy { .. } => {}
+        }
+    }
 }
 
 /// A top-level `param`.
@@ -247,10 +280,61 @@ pub struct AgentType {
     pub lets: Vec<Let>,
     /// Recordable names in order of declaration.
     pub declared: Vec<(String, VarRef)>,
+    /// What it says about the values of its agents when they are made.
+    pub initials: Initials,
     /// The tree of modes; number 0 is the root, the agent itself.
     pub modes: Arena<Mode>,
     /// Transitions of all modes in order of declaration in the source.
     pub transitions: Vec<Transition>,
+}
+
+/// What an agent type says about the values of its agents when they are made. They may read `index` ([`ExprKind::Local`] 0),
+/// parameters before them, and, but for parameters, variables of the same agent.
+#[derive(Clone, Debug, Default)]
+pub struct Initials {
+    /// Defaults of the numeric parameters.
+    pub params: Vec<Option<Given>>,
+    /// Initial values of the states.
+    pub states: Vec<Option<Given>>,
+    /// Initial values of the discrete variables.
+    pub discretes: Vec<Option<Given>>,
+    /// States and discretes, each after those that its initial value reads.
+    pub order: Vec<VarRef>,
+}
+
+/// What a text gives a variable.
+#[derive(Clone, Copy, Debug)]
+pub enum Given {
+    /// `= value`
+    Value(ExprId),
+    /// `~ distribution`
+    Draw(Draw),
+}
+
+impl Given {
+    /// The expressions that must be known first.
+    pub fn exprs(&self) -> Vec<ExprId> {
+        match self {
+            Given::Value(id) => vec![*id],
+            Given::Draw(draw) => draw.parameters().to_vec(),
+        }
+    }
+}
+
+/// A distribution with its parameters.
+#[derive(Clone, Copy, Debug)]
+pub struct Draw {
+    /// Which.
+    pub distribution: Distribution,
+    /// As many as the distribution has; the last is repeated.
+    pub all: [ExprId; 2],
+}
+
+impl Draw {
+    /// As many as the distribution has.
+    pub fn parameters(&self) -> &[ExprId] {
+        &self.all[..self.distribution.parameters().len()]
+    }
 }
 
 impl AgentType {
@@ -437,6 +521,34 @@ pub enum Action {
         /// Where it stands.
         span: Span,
     },
+    /// Makes an agent, at the end of the micro-step.
+    Create(Box<Create>),
+    /// Removes an agent, at the end of the micro-step; nothing if the expression is `none`.
+    Destroy {
+        /// Which.
+        agent: ExprId,
+        /// Where it stands.
+        span: Span,
+    },
+}
+
+/// `create Type(arguments) in Mode`: what the arguments do not give comes from the type's [`Initials`].
+#[derive(Clone, Debug)]
+pub struct Create {
+    /// The type of the agent.
+    pub ty: TypeId,
+    /// The leaf mode it starts in.
+    pub mode: ModeId,
+    /// By parameter, what the argument gives.
+    pub params: Vec<Option<Given>>,
+    /// By state.
+    pub states: Vec<Option<Given>>,
+    /// By discrete variable.
+    pub discretes: Vec<Option<Given>>,
+    /// By link, the agent.
+    pub links: Vec<Option<ExprId>>,
+    /// Where it stands.
+    pub span: Span,
 }
 
 /// `interaction name(a: A, b: B) { }`.
@@ -550,8 +662,10 @@ impl Default for Run {
 /// `record ... every d to "file"`.
 #[derive(Clone, Debug)]
 pub struct Record {
-    /// The numbers of the agents, rising.
+    /// The numbers of the agents that are there at t = 0, rising.
     pub agents: Vec<usize>,
+    /// For each agent type (by number), whether agents that are created later are recorded, too.
+    pub born: Vec<bool>,
     /// The names of the columns in declared order.
     pub columns: Vec<String>,
     /// For each agent type (by number), for each column, the variable; none: an empty cell.

@@ -84,7 +84,13 @@ fn false_assert(claim: &FalseAssert, report: &Report<'_>) -> Value {
 
 fn types(report: &Report<'_>) -> Value {
     let of_type = report.outcome.stats.types.iter().map(|ty| {
-        let counts = json!({ "agents": ty.agents, "steps": ty.steps, "events": ty.events });
+        let counts = json!({
+            "agents": ty.agents,
+            "created": ty.created,
+            "destroyed": ty.destroyed,
+            "steps": ty.steps,
+            "events": ty.events,
+        });
         (ty.name.clone(), counts)
     });
     Value::Object(of_type.collect::<Map<_, _>>())

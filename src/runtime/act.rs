@@ -10,7 +10,8 @@ use crate::runtime::engine::{Engine, StopRequest};
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::fold;
 use crate::runtime::guards::Origin;
-use crate::runtime::population::Slots;
+use crate::runtime::lives::{Conceived, Doomed};
+use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::Depth;
 use crate::runtime::truth;
 
@@ -51,6 +52,10 @@ pub struct Effect {
     exits: Vec<Write>,
     /// Changes of mode.
     pub moves: Vec<Move>,
+    /// Agents to be made.
+    pub conceived: Vec<Conceived>,
+    /// Agents to be removed.
+    pub doomed: Vec<Doomed>,
 }
 
 /// What has been written in a micro-step.
@@ -62,6 +67,16 @@ pub struct Written {
     pub restarted: FxHashSet<usize>,
     /// Changes of mode.
     pub moves: Vec<Move>,
+    /// Agents still to be made, and still to be removed.
+    pub conceived: Vec<Conceived>,
+    /// See `conceived`.
+    pub doomed: Vec<Doomed>,
+    /// Agents that have been made.
+    pub born: Vec<usize>,
+    /// Types of agents that have been removed.
+    pub died: Vec<usize>,
+    /// Agents whose links lead somewhere else, and those who have lost a member of their group.
+    pub relinked: Vec<usize>,
 }
 
 impl Engine<'_, '_> {
@@ -160,11 +175,22 @@ impl Engine<'_, '_> {
                     let mut exit = Effect::default();
                     self.exit(&change, &mut exit)?;
                     effect.exits.append(&mut exit.writes);
+                    effect.conceived.append(&mut exit.conceived);
+                    effect.doomed.append(&mut exit.doomed);
                     effect.moves.push(change);
                 }
                 ActionStep::Stop { reason, .. } => {
-                    let request = StopRequest { reason: reason.clone(), agent: slots[0], by: by.to_string() };
+                    let agent = self.agents.who(slots[0]);
+                    let request = StopRequest { reason: reason.clone(), agent, by: by.to_string() };
                     self.stop.get_or_insert(request);
+                }
+                ActionStep::Create(birth) => {
+                    effect.conceived.push(self.conceive(birth, &list.frame, slots, own)?);
+                }
+                ActionStep::Destroy { slot, span } => {
+                    if slots[*slot] != ABSENT {
+                        effect.doomed.push(Doomed { agent: slots[*slot], span: *span });
+                    }
                 }
             }
         }
@@ -204,8 +230,9 @@ impl Engine<'_, '_> {
     }
 
     /// Writes the effects of a micro-step, then runs and writes the entry actions, outer modes first.
-    pub fn carry_out(&mut self, effects: &[Effect]) -> Result<Written, Failure> {
+    pub fn carry_out(&mut self, effects: Vec<Effect>) -> Result<Written, Failure> {
         let mut written = Written::default();
+        let mut moves: Vec<Move> = Vec::new();
         for effect in effects {
             for write in &effect.writes {
                 self.write(write, &mut written);
@@ -213,13 +240,16 @@ impl Engine<'_, '_> {
             for change in &effect.moves {
                 self.enter_mode(change, &mut written);
             }
+            moves.extend(effect.moves);
+            written.conceived.extend(effect.conceived);
+            written.doomed.extend(effect.doomed);
         }
         self.present.forget();
-        let moves: Vec<Move> = effects.iter().flat_map(|effect| effect.moves.iter().cloned()).collect();
         let entries: Vec<(usize, &[usize])> =
             moves.iter().map(|change| (change.agent, change.entered.as_slice())).collect();
         self.run_entries(&entries, &mut written)?;
         written.moves = moves;
+        self.turn_over(&mut written)?;
         self.regroup(&mut written);
         self.set_locks(written.restarted.iter().copied());
         Ok(written)
@@ -244,6 +274,8 @@ impl Engine<'_, '_> {
             for write in &effect.writes {
                 self.write(write, written);
             }
+            written.conceived.append(&mut effect.conceived);
+            written.doomed.append(&mut effect.doomed);
             self.present.forget();
         }
         Ok(())
@@ -276,7 +308,7 @@ impl Engine<'_, '_> {
     }
 
     /// Keeps an agent's rows as they were before this micro-step.
-    fn remember(&mut self, agent: usize, written: &mut Written) {
+    pub fn remember(&mut self, agent: usize, written: &mut Written) {
         if written.before.contains_key(&agent) {
             return;
         }
@@ -286,7 +318,7 @@ impl Engine<'_, '_> {
     }
 
     /// Ends the past of an agent's group here: its segments are cut, its next step begins afresh.
-    fn restart(&mut self, agent: usize, written: &mut Written) {
+    pub fn restart(&mut self, agent: usize, written: &mut Written) {
         if written.restarted.contains(&agent) {
             return;
         }
@@ -303,7 +335,7 @@ impl Engine<'_, '_> {
     }
 
     /// Restarts the agents whose flow reads an auxiliary column of `agent`.
-    fn restart_readers(&mut self, agent: usize, column: usize, written: &mut Written) {
+    pub fn restart_readers(&mut self, agent: usize, column: usize, written: &mut Written) {
         for reader in self.agents.readers(agent) {
             let flow = self.agents.flow(reader);
             let slots = self.agents.slots(&flow.frame, &[reader]);
@@ -314,16 +346,19 @@ impl Engine<'_, '_> {
         }
     }
 
-    /// Divides the groups of agents that changed their mode anew (rule 13).
-    fn regroup(&mut self, written: &mut Written) {
-        if written.moves.is_empty() {
+    /// Divides the groups anew of agents that changed their mode or their links, or have come to be (rule 13).
+    pub fn regroup(&mut self, written: &mut Written) {
+        let mut changed: Vec<usize> = written.moves.iter().map(|change| change.agent).collect();
+        changed.extend(written.born.iter().chain(&written.relinked));
+        changed.retain(|&agent| self.agents.is_alive(agent));
+        if changed.is_empty() {
             return;
         }
-        let mut concerned: Vec<usize> = Vec::new();
-        for change in &written.moves {
-            let mut with = vec![change.agent];
-            with.extend(crate::runtime::groups::couples(&self.agents, change.agent));
-            for agent in with {
+        let (mut concerned, mut coupled): (Vec<usize>, bool) = (Vec::new(), false);
+        for agent in changed {
+            let couples = crate::runtime::groups::couples(&self.agents, agent);
+            coupled |= !couples.is_empty();
+            for agent in couples.into_iter().chain([agent]) {
                 let group = self.agents.agents[agent].group;
                 if !concerned.contains(&group) {
                     concerned.push(group);
@@ -331,14 +366,8 @@ impl Engine<'_, '_> {
             }
         }
         let alone = |group: &usize| self.groups.groups[*group].members.len() == 1;
-        if concerned.iter().all(alone) && concerned.len() == written.moves.len() {
-            let coupled = written
-                .moves
-                .iter()
-                .any(|change| !crate::runtime::groups::couples(&self.agents, change.agent).is_empty());
-            if !coupled {
-                return;
-            }
+        if !coupled && concerned.iter().all(alone) {
+            return;
         }
         let mut members: Vec<usize> = Vec::new();
         for &group in &concerned {
@@ -418,7 +447,10 @@ fn gotos(steps: &[ActionStep], visit: &mut dyn FnMut(usize, usize)) {
                 gotos(then, visit);
                 gotos(otherwise, visit);
             }
-            ActionStep::Assign { .. } | ActionStep::Stop { .. } => {}
+            ActionStep::Assign { .. }
+            | ActionStep::Stop { .. }
+            | ActionStep::Create(_)
+            | ActionStep::Destroy { .. } => {}
         }
     }
 }

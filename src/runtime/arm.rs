@@ -43,7 +43,7 @@ impl<'p> Engine<'p, '_> {
         state.periods = 0;
         for index in self.guards.atom_range(instance) {
             self.guards.atoms[index].slack = 0.0;
-            if !self.settle_far(index) {
+            if !self.guards.atoms[index].left_out && !self.settle_far(index) {
                 self.settle(index, rule, &Written::default());
             }
         }
@@ -205,7 +205,9 @@ impl<'p> Engine<'p, '_> {
         }
         let quantified = &self.guards.definition(self.guards.atoms[index].instance).quantified;
         let may_belong = |&agent: &usize| quantified.contains(&self.agents.agents[agent].ty);
-        !atom.folds.is_empty() && written.before.keys().any(may_belong)
+        !atom.folds.is_empty()
+            && (written.before.keys().chain(&written.born).any(may_belong)
+                || written.died.iter().any(|ty| quantified.contains(ty)))
     }
 
     /// Has an atom certified from `time` on; what was found beyond is void.
@@ -282,17 +284,24 @@ impl<'p> Engine<'p, '_> {
         let mut concerned: Vec<usize> = written.before.keys().chain(&written.restarted).copied().collect();
         concerned.sort_unstable();
         concerned.dedup();
-        self.relist(&concerned)?;
+        armed.extend(self.relist(&concerned, &written.born)?);
+        self.arm_born(written, &mut armed)?;
         let is_written = |agent: usize| written.before.contains_key(&agent);
         let is_concerned = |agent: usize| is_written(agent) || written.restarted.contains(&agent);
         let mut woken = Vec::new();
-        for instance in self.reading(&concerned) {
+        let mut reading = self.reading(&concerned);
+        for &ty in &written.died {
+            reading.extend_from_slice(&self.guards.over_type[ty]);
+        }
+        reading.sort_unstable();
+        reading.dedup();
+        for instance in reading {
             if !self.guards.instances[instance as usize].active {
                 continue;
             }
             let fresh = armed.contains(&instance);
             for index in self.guards.atom_range(instance) {
-                if !fresh && self.stays_far(index, written) {
+                if self.guards.atoms[index].left_out || !fresh && self.stays_far(index, written) {
                     continue;
                 }
                 let (atom, slots) = self.guards.atom_slots(&self.agents, index);
@@ -312,6 +321,33 @@ impl<'p> Engine<'p, '_> {
             self.note_rising(instance);
         }
         Ok(woken)
+    }
+
+    /// Arms the guards of agents that have come to be, and has those that range over them look at them; nothing is held.
+    fn arm_born(&mut self, written: &Written, armed: &mut FxHashSet<u32>) -> Result<(), Failure> {
+        for &agent in &written.born {
+            for instance in self.guards.of_agent[agent].clone() {
+                let definition = self.guards.definition(instance);
+                let is_pair = matches!(definition.origin, Origin::Pair(_));
+                let first = self.guards.instances[instance as usize].roots[0] as usize;
+                if (is_pair || inside(&self.agents, first, definition.mode)) && armed.insert(instance) {
+                    self.arm(instance, Rule::Fresh)?;
+                }
+            }
+        }
+        for &agent in &written.born {
+            for instance in self.guards.over_type[self.agents.agents[agent].ty].clone() {
+                if !self.guards.instances[instance as usize].active || armed.contains(&instance) {
+                    continue;
+                }
+                for index in self.guards.atoms_at(&self.agents, instance, agent) {
+                    if !self.guards.atoms[index].left_out && !self.settle_far(index) {
+                        self.settle(index, Rule::Fresh, &Written::default());
+                    }
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The instances that read any of these agents (or reach them by links), rising.
@@ -355,6 +391,9 @@ impl<'p> Engine<'p, '_> {
     pub fn arm_all(&mut self) -> Result<(), Failure> {
         for instance in 0..self.guards.instances.len() as u32 {
             let definition = self.guards.definition(instance);
+            if !self.guards.is_listed(instance) {
+                continue;
+            }
             let agent = self.guards.instances[instance as usize].roots[0] as usize;
             if matches!(definition.origin, Origin::Pair(_)) || inside(&self.agents, agent, definition.mode) {
                 self.arm(instance, Rule::Fresh)?;

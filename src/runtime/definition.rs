@@ -168,19 +168,9 @@ fn define<'p>(
             quantified.dedup();
         }
     }
-    let lay_out = |lists: Vec<Vec<Range>>| {
-        let mut first = 0;
-        let mut shapes = Vec::new();
-        for binders in lists {
-            let n: usize = binders.iter().map(|binder| agents.of_type[binder.ty].len()).product();
-            shapes.push(AtomShape { first, binders });
-            first += n;
-        }
-        (shapes, first)
-    };
     let comparisons = binders.comparisons;
-    let (atoms, n_atoms) = lay_out(binders.atoms);
-    let (rising, n_rising) = lay_out(binders.rising);
+    let (atoms, n_atoms) = lay_out(agents, binders.atoms);
+    let (rising, n_rising) = lay_out(agents, binders.rising);
     Definition {
         origin,
         ty,
@@ -196,6 +186,33 @@ fn define<'p>(
         n_rising,
         quantified,
         near: &[],
+    }
+}
+
+/// Lays out lists of binders for the seats that there are; and how many places they take.
+fn lay_out(agents: &Agents<'_>, lists: Vec<Vec<Range>>) -> (Vec<AtomShape>, usize) {
+    let mut first = 0;
+    let mut shapes = Vec::new();
+    for binders in lists {
+        let n: usize = binders.iter().map(|binder| agents.seats[binder.ty].len()).product();
+        shapes.push(AtomShape { first, binders });
+        first += n;
+    }
+    (shapes, first)
+}
+
+impl Definition<'_> {
+    /// Lays its comparisons out anew, for the seats that there are now.
+    pub fn lay_out(&mut self, agents: &Agents<'_>) {
+        let binders = |shapes: &mut Vec<AtomShape>| shapes.drain(..).map(|shape| shape.binders).collect();
+        let (atoms, rising) = (binders(&mut self.atoms), binders(&mut self.rising));
+        (self.atoms, self.n_atoms) = lay_out(agents, atoms);
+        (self.rising, self.n_rising) = lay_out(agents, rising);
+    }
+
+    /// Whether comparisons of it are bound to agents of a type.
+    pub fn binds(&self, ty: usize) -> bool {
+        self.atoms.iter().chain(&self.rising).any(|shape| shape.binders.iter().any(|binder| binder.ty == ty))
     }
 }
 

@@ -77,7 +77,7 @@ impl Engine<'_, '_> {
     /// Rule 6: groups, locks, entry actions, arming, micro-steps at t = 0.
     pub fn begin(&mut self) -> Result<(), Failure> {
         self.present.go(0.0);
-        let all: Vec<usize> = (0..self.agents.len()).collect();
+        let all = self.agents.living();
         self.set_locks(all.iter().copied());
         let mut written = Written::default();
         for group in self.groups.divide(&mut self.agents, &all, 0.0, &|_| None) {
@@ -87,6 +87,9 @@ impl Engine<'_, '_> {
         let entries: Vec<(usize, &[usize])> =
             all.iter().zip(&entered).map(|(&agent, modes)| (agent, &modes[..])).collect();
         self.run_entries(&entries, &mut written)?;
+        self.turn_over(&mut written)?;
+        self.regroup(&mut written);
+        self.end_lives();
         self.set_locks(written.restarted.iter().copied());
         self.recorder.begin(&self.agents, &mut self.present, self.observer)?;
         self.begin_lists()?;
@@ -102,7 +105,7 @@ impl Engine<'_, '_> {
     }
 
     /// The modes an agent is in, outer ones first.
-    fn modes_of(&self, agent: usize) -> Vec<usize> {
+    pub fn modes_of(&self, agent: usize) -> Vec<usize> {
         let modes = &self.program.types[self.agents.agents[agent].ty].modes;
         let above = std::iter::successors(Some(self.agents.agents[agent].mode), |&mode| modes[mode].parent);
         let mut inside: Vec<usize> = above.collect();
@@ -116,7 +119,7 @@ impl Engine<'_, '_> {
             return Err(Reason::NeverEnds { time: self.present.time }.into());
         }
         let end = self.time_end;
-        for agent in 0..self.agents.len() {
+        for agent in self.agents.living() {
             self.recorder.step(&self.agents, &mut self.present, agent, end, self.observer)?;
         }
         self.present.go(end);

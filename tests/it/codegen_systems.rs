@@ -155,6 +155,7 @@ pub fn with_flow(graph: Graph, rates: Vec<NodeId>) -> System {
         links: Vec::new(),
         lets: Vec::new(),
         declared: Vec::new(),
+        initials: Default::default(),
         modes: vec![mode],
         transitions: Vec::new(),
     };
