@@ -49,7 +49,9 @@ fn steps(
                 ActionStep::Goto { slot: *participant, target: target.index(), span: *span }
             }
             Action::Stop { reason, span } => ActionStep::Stop { reason: reason.clone(), span: *span },
-            Action::Create(create) => ActionStep::Create(Arc::new(births::birth(draft, scope, create, name)?)),
+            Action::Create(create) => {
+                ActionStep::Create(Arc::new(births::birth(draft, scope, create, name)?))
+            }
             Action::Destroy { agent, span } => match births::agent(draft, scope, *agent, *span)? {
                 Some(slot) => ActionStep::Destroy { slot, span: *span },
                 None => continue,

@@ -7,8 +7,9 @@ use std::fmt::Write;
 use crate::calculus::graph::NodeId;
 use crate::calculus::print::{self, Names, Sheet};
 use crate::calculus::system::{
-    ActionStep, AgentSystem, Atom, Birth, ClaimKind, Column, Condition, Flow, Frame, FunctionId, Guard, KinkKind,
-    LetValue, ModeSystem, Near, PairTransition, Quantified, Source, System, Target, TransitionSystem, Trigger, VarRef,
+    ActionStep, AgentSystem, Atom, Birth, ClaimKind, Column, Condition, Flow, Frame, FunctionId, Guard,
+    KinkKind, LetValue, ModeSystem, Near, PairTransition, Quantified, Source, System, Target,
+    TransitionSystem, Trigger, VarRef,
 };
 
 /// The whole system as text; the same for the same system.

@@ -6,7 +6,8 @@ use std::fmt::Write;
 
 use super::formula::{Formulas, Names, number_text};
 use super::ir::{
-    Action, AgentType, Claim, Create, Given, Instance, Integrator, Interaction, Mode, ModeId, Model, ParamValue, Population, Record, Run, Transition, Trigger, Type, VarRef, Variable,
+    Action, AgentType, Claim, Create, Given, Instance, Integrator, Interaction, Mode, ModeId, Model,
+    ParamValue, Population, Record, Run, Transition, Trigger, Type, VarRef, Variable,
 };
 
 /// How many agents of a block are written.

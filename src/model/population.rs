@@ -27,11 +27,7 @@ struct Data {
 }
 
 /// Makes the population.
-pub(super) fn populate<'a>(
-    context: &mut Context<'a>,
-    file: &'a ast::Ast,
-    files: &mut dyn Files,
-) {
+pub(super) fn populate<'a>(context: &mut Context<'a>, file: &'a ast::Ast, files: &mut dyn Files) {
     let mut opened = FxHashMap::default();
     let instances = file.items.iter().filter_map(|item| match item {
         Item::System(system) => Some(&system.instances),

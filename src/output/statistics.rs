@@ -32,6 +32,8 @@ pub fn statistics(report: &Report<'_>) -> String {
         "jacobians": stats.jacobians,
         "guard_evaluations": stats.guard_evaluations,
         "guard_ranges": stats.guard_ranges,
+        "places": stats.places,
+        "guard_places": stats.guard_places,
         "pairs_listed": stats.pairs_listed,
         "undecided_roots": stats.undecided_roots,
         "cuts": stats.cuts,

@@ -128,7 +128,8 @@ fn each_record_has_its_table_and_each_kind_of_cell_its_form() {
     tables.trajectory(first.sink(), &["x".into()]).unwrap();
     let columns: Vec<String> = ["a", "b", "c", "d", "e"].map(String::from).into();
     tables.trajectory(second.sink(), &columns).unwrap();
-    let cells = [Cell::Empty, Cell::Number(2.0), Cell::Bool(true), Cell::Agent(Some(who(1))), Cell::Agent(None)];
+    let cells =
+        [Cell::Empty, Cell::Number(2.0), Cell::Bool(true), Cell::Agent(Some(who(1))), Cell::Agent(None)];
     let row = Row { time: 0.25, micro: 1, agent: who(0), mode: "Spiral", cells: &cells };
     tables.sample(1, &row).unwrap();
     tables.flush().unwrap();
@@ -141,11 +142,23 @@ fn final_states_of_several_types_share_columns_by_name() {
     let (cast, page) = (cast(), Page::default());
     let mut tables = Tables::new(&cast);
     tables.final_states(page.sink()).unwrap();
-    let car =
-        Last { time: 20.0, agent: who(0), ty: 0, mode: "", states: &[1.0, 2.0], discretes: &[Cell::Number(3.0)] };
+    let car = Last {
+        time: 20.0,
+        agent: who(0),
+        ty: 0,
+        mode: "",
+        states: &[1.0, 2.0],
+        discretes: &[Cell::Number(3.0)],
+    };
     tables.last(&car).unwrap();
-    let lamp =
-        Last { time: 20.0, agent: who(1), ty: 1, mode: "On", states: &[-0.5], discretes: &[Cell::Bool(false)] };
+    let lamp = Last {
+        time: 20.0,
+        agent: who(1),
+        ty: 1,
+        mode: "On",
+        states: &[-0.5],
+        discretes: &[Cell::Bool(false)],
+    };
     tables.last(&lamp).unwrap();
     tables.flush().unwrap();
     assert_eq!(page.text(), "time,agent,mode,x,y,lane,on\n20,fast,,1,2,3,\n20,cars[0],On,,-0.5,,false\n");

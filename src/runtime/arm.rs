@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 
 use crate::codegen::kernel::{AgentView, Kernel};
-use crate::codegen::program::{Atom, Relation, Trigger};
+use crate::codegen::program::{Atom, Relation, Slot, Trigger};
 use crate::runtime::act::Written;
 use crate::runtime::engine::{Due, Engine};
 use crate::runtime::failure::{Failure, Reason};
@@ -123,8 +123,10 @@ impl<'p> Engine<'p, '_> {
         let folds = self.truths().gather(before.instance, kernel, &slots, Side::After);
         let g = truth::evaluate(&self.agents, &mut self.present, kernel, &slots, &folds);
         let mut touched = false;
-        let unchanged =
-            rule == Rule::Woken && folds.is_empty() && self.value_before(kernel, &slots, written) == Some(g);
+        let unchanged = rule == Rule::Woken
+            && folds.is_empty()
+            && !self.leads_elsewhere(index, written)
+            && self.value_before(kernel, &slots, written) == Some(g);
         let truth = if g.is_nan() || absent && !g.is_finite() {
             false
         } else if unchanged && before.rooted {
@@ -200,7 +202,7 @@ impl<'p> Engine<'p, '_> {
     pub fn reads_written(&self, index: usize, written: &Written) -> bool {
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
         let is_written = |agent: usize| written.before.contains_key(&agent);
-        if atom.slots.iter().any(|&slot| is_written(slots[slot])) {
+        if atom.slots.iter().any(|&slot| is_written(slots[slot])) || self.leads_elsewhere(index, written) {
             return true;
         }
         let quantified = &self.guards.definition(self.guards.atoms[index].instance).quantified;
@@ -208,6 +210,25 @@ impl<'p> Engine<'p, '_> {
         !atom.folds.is_empty()
             && (written.before.keys().chain(&written.born).any(may_belong)
                 || written.died.iter().any(|ty| quantified.contains(ty)))
+    }
+
+    /// Whether a link by which a comparison reaches an agent leads somewhere else now.
+    fn leads_elsewhere(&self, index: usize, written: &Written) -> bool {
+        if written.relinked.is_empty() {
+            return false;
+        }
+        let (atom, slots) = self.guards.atom_slots(&self.agents, index);
+        let frame = self.guards.definition(self.guards.atoms[index].instance).frame;
+        atom.slots.iter().any(|&slot| {
+            let mut slot = slot;
+            while let Slot::Link { from, .. } = frame.slots[slot] {
+                if written.relinked.contains(&slots[from]) {
+                    return true;
+                }
+                slot = from;
+            }
+            false
+        })
     }
 
     /// Has an atom certified from `time` on; what was found beyond is void.

@@ -294,6 +294,8 @@ impl<'p, 'o> Engine<'p, 'o> {
             jacobians: counts.jacobians,
             guard_evaluations: self.curves.evaluations,
             guard_ranges: self.curves.ranges + self.enclosures.ranges + self.reaches.ranges,
+            places: self.agents.len() as u64,
+            guard_places: (self.guards.instances.len() + self.guards.atoms.len()) as u64,
             pairs_listed: self.guards.n_pairs,
             undecided_roots: self.n_undecided,
             cuts: self.n_cuts,

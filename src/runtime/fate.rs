@@ -91,7 +91,8 @@ impl Fate {
             }
             Fate::BadDraw { place, parameter, needs, value, span } => {
                 let title = format!("{parameter} is {}", number_text(*value));
-                let diagnostic = Diagnostic::error("HY0532", title).label(*span, format!("needs to be {needs}"));
+                let diagnostic =
+                    Diagnostic::error("HY0532", title).label(*span, format!("needs to be {needs}"));
                 place.add_to(diagnostic)
             }
             Fate::RequiredNone { place, parameter, span } => {
@@ -103,7 +104,8 @@ impl Fate {
             }
             Fate::Held { place, holder, parameter, span } => {
                 let agent = &place.agent;
-                let title = format!("`{agent}` is destroyed, and is `{parameter}` of `{holder}`, which is not");
+                let title =
+                    format!("`{agent}` is destroyed, and is `{parameter}` of `{holder}`, which is not");
                 place.add_to(Diagnostic::error("HY0534", title).label(*span, "destroyed here")).help(
                     "a parameter of agent type is never none: declare a `link`, which becomes none, or destroy both at once",
                 )

@@ -164,21 +164,24 @@ impl Engine<'_, '_> {
         if self.agents.n_occupied() >= limit {
             return Err(Fate::TooMany { place: self.place(*creator), limit, span: birth.span }.into());
         }
+        for (link, declared) in self.program.types[ty].links.iter().enumerate() {
+            let is_given = conceived.links.iter().any(|&(given, target)| given == link && target != ABSENT);
+            if declared.required && !is_given {
+                let name = &self.program.types[ty].name;
+                let parameter = format!("{name}#{}.{}", self.agents.n_numbers, declared.name);
+                let place = self.place(*creator);
+                return Err(Fate::RequiredNone { place, parameter, span: birth.span }.into());
+            }
+        }
         let Row { states, aux } = self.row(conceived)?;
         self.make_seat(ty)?;
         let segment = Segment::at(self.present.time, &states);
         let (number, seat, word, created, mode, group) = (0, 0, Some(*word), 0, birth.mode, 0);
         let n_states = states.len();
-        let place = self.agents.admit(Agent { number, ty, seat, word, created, mode, group, states, aux, segment });
+        let place =
+            self.agents.admit(Agent { number, ty, seat, word, created, mode, group, states, aux, segment });
         for &(link, target) in &conceived.links {
             self.agents.link(place, link, target);
-        }
-        for (link, declared) in self.program.types[ty].links.iter().enumerate() {
-            if declared.required && self.agents.linked(place, link) == ABSENT {
-                let parameter = format!("{}.{}", self.agents.name(place), declared.name);
-                let place = self.place(*creator);
-                return Err(Fate::RequiredNone { place, parameter, span: birth.span }.into());
-            }
         }
         self.make_rows(place, n_states);
         let time = self.present.time;

@@ -99,7 +99,8 @@ impl Neighbours {
             for side in field.sides() {
                 let number = field.number(agents, agent, side);
                 if let Some(number) = number.filter(|&number| (number as usize) < field.grid.len()) {
-                    let nowhere: SmallVec<[Interval; 4]> = field.grid.get(number).iter().map(|_| NOWHERE).collect();
+                    let nowhere: SmallVec<[Interval; 4]> =
+                        field.grid.get(number).iter().map(|_| NOWHERE).collect();
                     field.grid.change(number, &nowhere);
                 }
             }

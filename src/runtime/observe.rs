@@ -282,6 +282,10 @@ pub struct Stats {
     pub guard_evaluations: u64,
     /// Evaluations of guard expressions over an interval.
     pub guard_ranges: u64,
+    /// Places that agents have had: as many as were alive at a time, for they are used again.
+    pub places: u64,
+    /// Places that guards and their comparisons have had.
+    pub guard_places: u64,
     /// Guard instances over pairs (or larger tuples) that exist.
     pub pairs_listed: u64,
     /// Roots that could be neither excluded nor isolated.

@@ -29,7 +29,9 @@ impl Guards<'_> {
 
     /// How many atom instances there are when there is room for all seats.
     pub fn size(&self, agents: &Agents<'_>) -> usize {
-        let seats = |shape: &AtomShape| shape.binders.iter().map(|binder| agents.seats[binder.ty].len()).product::<usize>();
+        let seats = |shape: &AtomShape| {
+            shape.binders.iter().map(|binder| agents.seats[binder.ty].len()).product::<usize>()
+        };
         let sizes: Vec<usize> =
             self.definitions.iter().map(|definition| definition.atoms.iter().map(seats).sum()).collect();
         self.instances.iter().map(|instance| sizes[instance.definition as usize]).sum()
@@ -37,8 +39,11 @@ impl Guards<'_> {
 
     /// Makes room for seats that have been added behind the `before` ones that a type had.
     pub fn make_room(&mut self, agents: &Agents<'_>, ty: usize, before: usize, queues: &mut Queues) {
-        let old: Vec<(Vec<AtomShape>, Vec<AtomShape>)> =
-            self.definitions.iter().map(|definition| (definition.atoms.clone(), definition.rising.clone())).collect();
+        let old: Vec<(Vec<AtomShape>, Vec<AtomShape>)> = self
+            .definitions
+            .iter()
+            .map(|definition| (definition.atoms.clone(), definition.rising.clone()))
+            .collect();
         if !self.definitions.iter().any(|definition| definition.binds(ty)) {
             return;
         }

@@ -365,7 +365,10 @@ impl Recorder {
 
     /// `cars[3]`, `Car#17`
     fn name(&self, who: Who) -> String {
-        self.agents.get(who.number).cloned().unwrap_or_else(|| format!("{}#{}", self.types[who.ty], who.number))
+        self.agents
+            .get(who.number)
+            .cloned()
+            .unwrap_or_else(|| format!("{}#{}", self.types[who.ty], who.number))
     }
 
     fn run(self, outcome: Outcome, sources: SourceMap) -> Run {

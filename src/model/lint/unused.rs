@@ -9,7 +9,9 @@ use rustc_hash::FxHashSet;
 use super::{Warning, any_within, guard};
 use crate::base::Span;
 use crate::model::context::{Body, Context, Meaning, Progress};
-use crate::model::ir::{Action, Aggregate, ExprId, ExprKind, Given, Interaction, Model, Trigger, TypeId, VarRef};
+use crate::model::ir::{
+    Action, Aggregate, ExprId, ExprKind, Given, Interaction, Model, Trigger, TypeId, VarRef,
+};
 use crate::model::types::Ty;
 use crate::syntax::ast::Formal;
 
