@@ -13,10 +13,10 @@ use std::sync::Arc;
 
 use crate::base::{Arena, Idx, Span};
 use crate::calculus::graph::{Graph, NodeId};
-pub use crate::calculus::layout::Layout;
+pub use crate::calculus::layout::{Column, Layout, Target};
 pub use crate::calculus::range::{Near, Range};
 pub use crate::calculus::relation::Relation;
-use crate::math::Scale;
+pub use crate::calculus::slot::Slot;
 use crate::math::draw::Distribution;
 pub use crate::model::ir::{Aggregate, Block, Instance, Integrator, Population, Record, Run, VarRef};
 
@@ -103,91 +103,6 @@ pub struct Term {
     pub smooth: bool,
 }
 
-/// How the agent in a slot is found.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Slot {
-    /// `self`, a participant, or an agent bound by a quantifier.
-    Root {
-        /// Its type.
-        ty: usize,
-        /// For listings: `self`, `a`, `o`.
-        name: String,
-    },
-    /// The agent that link number `link` of the agent in slot `from` leads to; it may be absent.
-    Link {
-        /// Where the link starts.
-        from: usize,
-        /// The number of the link in its type.
-        link: usize,
-        /// The type of the agent it leads to.
-        ty: usize,
-        /// For listings: `lead`, `o.lead`.
-        name: String,
-    },
-    /// The value of an aggregate.
-    Fold {
-        /// Its number in [`Frame::folds`].
-        number: usize,
-        /// The type over which it goes.
-        ty: usize,
-        /// For listings: `sum[o in Car]`.
-        name: String,
-    },
-}
-
-impl System {
-    /// All lists of actions of agents, with their types; then those of interactions.
-    pub fn action_lists(&self) -> impl Iterator<Item = &ActionList> {
-        let of_types = self.types.iter().flat_map(|ty| {
-            let modes = ty.modes.iter().flat_map(|mode| [&mode.entry, &mode.exit]);
-            modes.chain(ty.transitions.iter().map(|transition| &transition.actions))
-        });
-        let pairs = self.interactions.iter().flat_map(|interaction| &interaction.transitions);
-        of_types.chain(pairs.map(|pair| &pair.transition.actions))
-    }
-}
-
-impl ActionList {
-    /// All that makes agents.
-    pub fn births(&self) -> Vec<&Birth> {
-        let mut found = Vec::new();
-        add_births(&self.steps, &mut found);
-        found
-    }
-}
-
-fn add_births<'s>(steps: &'s [ActionStep], found: &mut Vec<&'s Birth>) {
-    for step in steps {
-        match step {
-            ActionStep::Create(birth) => found.push(birth),
-            ActionStep::If { then, otherwise, .. } => {
-                add_births(then, found);
-                add_births(otherwise, found);
-            }
-            ActionStep::Assign { .. }
-            | ActionStep::Goto { .. }
-            | ActionStep::Stop { .. }
-            | ActionStep::Destroy { .. } => {}
-        }
-    }
-}
-
-impl Slot {
-    /// The agent type; of an aggregate that over which it goes.
-    pub fn ty(&self) -> usize {
-        match self {
-            Slot::Root { ty, .. } | Slot::Link { ty, .. } | Slot::Fold { ty, .. } => *ty,
-        }
-    }
-
-    /// The name for listings.
-    pub fn name(&self) -> &str {
-        match self {
-            Slot::Root { name, .. } | Slot::Link { name, .. } | Slot::Fold { name, .. } => name,
-        }
-    }
-}
-
 /// An agent type.
 #[derive(Clone, Debug)]
 pub struct AgentSystem {
@@ -213,17 +128,6 @@ pub struct AgentSystem {
     pub modes: Vec<ModeSystem>,
     /// Transitions of all modes in order of declaration.
     pub transitions: Vec<TransitionSystem>,
-}
-
-/// A named column with its unit for output.
-#[derive(Clone, Debug)]
-pub struct Column {
-    /// Its name.
-    pub name: String,
-    /// What one declared unit is in SI.
-    pub scale: Scale,
-    /// Whether it holds a boolean.
-    pub boolean: bool,
 }
 
 /// A link of an agent type.
@@ -532,17 +436,6 @@ pub struct ActionList {
     pub writes: Vec<(usize, Target)>,
 }
 
-/// A column that actions write.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Target {
-    /// A state.
-    State(usize),
-    /// A discrete variable, by its auxiliary column (absolute index).
-    Aux(usize),
-    /// The mode.
-    Mode,
-}
-
 /// A step of a list of actions.
 #[derive(Clone, Debug)]
 pub enum ActionStep {
@@ -617,16 +510,6 @@ pub enum Source {
         /// Where it stands.
         span: Span,
     },
-}
-
-impl Source {
-    /// The functions that say what it is.
-    pub fn functions(&self) -> &[FunctionId] {
-        match self {
-            Source::Number(function) => std::slice::from_ref(function),
-            Source::Draw { parameters, .. } => parameters,
-        }
-    }
 }
 
 /// How an agent is made by an action.

@@ -8,6 +8,7 @@ use crate::math::draw::Distribution;
 use crate::math::{Op, Scale};
 pub use crate::model::applied::Operands;
 pub use crate::model::integrator::Integrator;
+pub use crate::model::kinds::{Aggregate, Quantifier};
 use crate::model::limits::Limits;
 
 /// Names an [`Expr`].
@@ -44,38 +45,6 @@ pub struct Model {
     pub run: Run,
     /// What it may ask for.
     pub limits: Limits,
-}
-
-impl Model {
-    /// All lists of actions of agents: those of modes, then those of transitions; then those of interactions.
-    pub fn action_lists(&self) -> impl Iterator<Item = &[Action]> {
-        let of_types = self.types.iter().flat_map(|ty| {
-            let modes = ty.modes.iter().flat_map(|mode| [&mode.entry[..], &mode.exit[..]]);
-            modes.chain(ty.transitions.iter().map(|transition| &transition.actions[..]))
-        });
-        let pairs = self.interactions.iter().flat_map(|interaction| &interaction.transitions);
-        of_types.chain(pairs.map(|transition| &transition.actions[..]))
-    }
-
-    /// All that creates agents, in the order of [`Model::action_lists`].
-    pub fn creations(&self) -> Vec<&Create> {
-        let mut found = Vec::new();
-        self.action_lists().for_each(|list| add_creations(list, &mut found));
-        found
-    }
-}
-
-fn add_creations<'m>(list: &'m [Action], found: &mut Vec<&'m Create>) {
-    for action in list {
-        match action {
-            Action::Create(create) => found.push(create),
-            Action::If { then, otherwise, .. } => {
-                add_creations(then, found);
-                add_creations(otherwise, found);
-            }
-            Action::Assign { .. } | Action::Goto { .. } | Action::Stop { .. } | Action::Destroy { .. } => {}
-        }
-    }
 }
 
 /// A top-level `param`.
@@ -203,40 +172,6 @@ pub enum ExprKind {
     Crossing(ExprId),
 }
 
-/// The quantifiers that make conditions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Quantifier {
-    /// At least one.
-    Exists,
-    /// All.
-    Forall,
-}
-
-/// The quantifiers that make numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Aggregate {
-    /// How many there are.
-    Count,
-    /// The sum of the terms, added in the order of the agents; 0 of none.
-    Sum,
-    /// The least term; infinite of none.
-    Min,
-    /// The greatest term; minus infinity of none.
-    Max,
-}
-
-impl Aggregate {
-    /// As it is written.
-    pub fn name(self) -> &'static str {
-        match self {
-            Aggregate::Count => "count",
-            Aggregate::Sum => "sum",
-            Aggregate::Min => "min",
-            Aggregate::Max => "max",
-        }
-    }
-}
-
 /// A name bound by a quantifier.
 #[derive(Clone, Debug)]
 pub struct Binder {
@@ -311,16 +246,6 @@ pub enum Given {
     Draw(Draw),
 }
 
-impl Given {
-    /// The expressions that must be known first.
-    pub fn exprs(&self) -> Vec<ExprId> {
-        match self {
-            Given::Value(id) => vec![*id],
-            Given::Draw(draw) => draw.parameters().to_vec(),
-        }
-    }
-}
-
 /// A distribution with its parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct Draw {
@@ -328,26 +253,6 @@ pub struct Draw {
     pub distribution: Distribution,
     /// As many as the distribution has; the last is repeated.
     pub all: [ExprId; 2],
-}
-
-impl Draw {
-    /// As many as the distribution has.
-    pub fn parameters(&self) -> &[ExprId] {
-        &self.all[..self.distribution.parameters().len()]
-    }
-}
-
-impl AgentType {
-    /// The name of a variable.
-    pub fn variable_name(&self, variable: VarRef) -> &str {
-        match variable {
-            VarRef::State(number) => &self.states[number].name,
-            VarRef::Discrete(number) => &self.discretes[number].name,
-            VarRef::Param(number) => &self.params[number].name,
-            VarRef::Link(number) => &self.links[number].name,
-            VarRef::Let(number) => &self.lets[number].name,
-        }
-    }
 }
 
 /// A variable of an agent type.
@@ -577,18 +482,6 @@ pub struct Population {
     pub fixed: Vec<(TypeId, usize)>,
 }
 
-impl Population {
-    /// The path of an agent: `fast`, `cars[3]`.
-    pub fn agent_name(&self, agent: usize) -> String {
-        let after = self.blocks.partition_point(|block| block.first <= agent);
-        match self.blocks[..after].last() {
-            Some(block) if block.array => format!("{}[{}]", block.name, agent - block.first),
-            Some(block) => block.name.clone(),
-            None => format!("#{agent}"),
-        }
-    }
-}
-
 /// `name = Type[count](...)`.
 #[derive(Clone, Debug)]
 pub struct Block {
@@ -642,21 +535,6 @@ pub struct Run {
     pub events: Option<String>,
     /// Where `run` stands; none if there is none.
     pub span: Option<Span>,
-}
-
-impl Default for Run {
-    fn default() -> Self {
-        Self {
-            until: None,
-            tolerance: 1e-6,
-            absolute: None,
-            seed: 0,
-            integrator: Integrator::Auto,
-            records: Vec::new(),
-            events: None,
-            span: None,
-        }
-    }
 }
 
 /// `record ... every d to "file"`.

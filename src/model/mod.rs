@@ -8,7 +8,9 @@
 mod integrator;
 pub mod limits;
 mod applied;
+mod kinds;
 pub mod ir;
+mod access;
 mod suggest;
 mod dimension;
 mod measure;
