@@ -15,12 +15,28 @@ impl System {
 }
 
 impl ActionList {
+    /// Whether it removes agents.
+    pub fn destroys(&self) -> bool {
+        destroys(&self.steps)
+    }
+
     /// All that makes agents.
     pub fn births(&self) -> Vec<&Birth> {
         let mut found = Vec::new();
         add_births(&self.steps, &mut found);
         found
     }
+}
+
+fn destroys(steps: &[ActionStep]) -> bool {
+    steps.iter().any(|step| match step {
+        ActionStep::Destroy { .. } => true,
+        ActionStep::If { then, otherwise, .. } => destroys(then) || destroys(otherwise),
+        ActionStep::Assign { .. }
+        | ActionStep::Goto { .. }
+        | ActionStep::Stop { .. }
+        | ActionStep::Create(_) => false,
+    })
 }
 
 fn add_births<'s>(steps: &'s [ActionStep], found: &mut Vec<&'s Birth>) {

@@ -93,7 +93,7 @@ impl<'m> Draft<'m> {
 }
 
 fn link(link: &Link) -> LinkSystem {
-    LinkSystem { name: link.name.clone(), required: link.required }
+    LinkSystem { name: link.name.clone(), required: link.required, updates: Vec::new() }
 }
 
 fn columns(ty: &AgentType) -> AgentSystem {

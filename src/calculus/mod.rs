@@ -33,6 +33,7 @@ mod aggregate;
 mod kinks;
 mod flow;
 mod births;
+mod links;
 mod actions;
 mod symmetry;
 mod agents;
@@ -60,6 +61,7 @@ pub fn derive(model: &Model) -> Result<System, Vec<Diagnostic>> {
     agents::transitions(&mut draft);
     agents::lets(&mut draft);
     births::initials(&mut draft);
+    links::updates(&mut draft);
     let mut interactions = agents::interactions(&mut draft);
     agents::number_declarations(&mut draft.types, &mut interactions);
     draft.finish(interactions).map(near::ranges)

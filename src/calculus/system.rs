@@ -137,6 +137,45 @@ pub struct LinkSystem {
     pub name: String,
     /// A parameter of agent type: never none.
     pub required: bool,
+    /// If it follows from an expression: its cases, of which the first that holds says whom it leads to.
+    pub updates: Vec<LinkUpdate>,
+}
+
+/// One case of a link that follows from an expression.
+#[derive(Clone, Debug)]
+pub struct LinkUpdate {
+    /// The number of the link in its type.
+    pub link: usize,
+    /// As messages call it: `Car.lead`.
+    pub label: String,
+    /// The agents that all of it reads.
+    pub frame: Frame,
+    /// When the case holds.
+    pub case: Guard,
+    /// When it holds and the link does not lead where it says: `And` of the case and of that, which is a tree of its own.
+    pub stale: Guard,
+    /// Whom the link is to lead to.
+    pub target: Whither,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// Whom a link is to lead to.
+#[derive(Clone, Debug)]
+pub enum Whither {
+    /// To nobody.
+    Nobody,
+    /// To the agent in a slot.
+    Slot(usize),
+    /// To whoever has the least key. The link strays if `Or(Exists(And(filter, Or(nobody, nearer))), And(somebody, lost))`.
+    Nearest {
+        /// Among whom.
+        range: Range,
+        /// Who belongs to it.
+        filter: Guard,
+        /// One output.
+        key: FunctionId,
+    },
 }
 
 /// A `let`, computed when it is recorded.

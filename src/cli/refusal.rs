@@ -27,7 +27,7 @@ pub(super) fn refuse_aggregates(algorithm: Algorithm, program: &Program) -> Resu
     }
     let name = algorithm.name();
     Err(format!(
-        "`{name}` does not take guards with count, sum, min or max over agents that come and go while states flow (their \
+        "`{name}` does not take agents that are created or destroyed, links with an expression, nor guards with count, sum, min or max over agents that come and go while states flow (their \
          `where` compares what flows): such a guard jumps; there is `masim`"
     ))
 }

@@ -1,7 +1,8 @@
 //! What is asked of a model in more than one place: its lists of actions, the names of its agents and variables.
 
 use super::ir::{
-    Action, AgentType, Create, Draw, ExprId, Given, Integrator, Model, Population, Run, VarRef,
+    Action, AgentType, Create, Draw, ExprId, Given, Integrator, LinkCase, LinkTarget, Model, Population, Run,
+    VarRef,
 };
 
 impl Model {
@@ -90,5 +91,21 @@ impl Default for Run {
             events: None,
             span: None,
         }
+    }
+}
+
+impl LinkCase {
+    /// All that it says.
+    pub fn exprs(&self) -> Vec<ExprId> {
+        let mut all: Vec<ExprId> = self.condition.into_iter().collect();
+        match &self.target {
+            LinkTarget::Nobody => {}
+            LinkTarget::Agent(agent) => all.push(*agent),
+            LinkTarget::Nearest { filter, key, .. } => {
+                all.extend(*filter);
+                all.push(*key);
+            }
+        }
+        all
     }
 }

@@ -74,7 +74,7 @@ impl<'a> Context<'a> {
                 let agent = self.lower(scope, value);
                 let agent = self.fit(agent, want, value.span, &what);
                 create.links[k] = (agent.ty != Ty::Wrong).then_some(agent.id);
-                return;
+                return self.check_link_argument(create.ty, k, &arg.name);
             }
             Some(Member::Twice) => return,
             Some(Member::Let(_) | Member::Event) | None => {
@@ -90,6 +90,14 @@ impl<'a> Context<'a> {
             }
             GivenKind::Draw => self.lower_draw(scope, value, slot).map(Given::Draw),
         };
+    }
+
+    /// A link that follows from an expression is not given anything.
+    pub fn check_link_argument(&mut self, ty: TypeId, link: usize, name: &ast::Name) {
+        if !self.model.types[ty].links[link].cases.is_empty() {
+            let (name, span) = (name.text.clone(), name.span);
+            self.report(SystemError::FollowsLink { name, span });
+        }
     }
 
     /// Reports what has no value, neither here nor where it is declared.

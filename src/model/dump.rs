@@ -6,8 +6,8 @@ use std::fmt::Write;
 
 use super::formula::{Formulas, Names, number_text};
 use super::ir::{
-    Action, AgentType, Claim, Create, Given, Instance, Integrator, Interaction, Mode, ModeId, Model,
-    ParamValue, Population, Record, Run, Transition, Trigger, Type, VarRef, Variable,
+    Action, AgentType, Claim, Create, ExprId, Given, Instance, Integrator, Interaction, LinkCase, LinkTarget,
+    Mode, ModeId, Model, ParamValue, Population, Record, Run, Transition, Trigger, Type, VarRef, Variable,
 };
 
 /// How many agents of a block are written.
@@ -88,6 +88,9 @@ impl<'m> Writer<'m> {
             let none = if link.required { "" } else { " or none" };
             let target = &self.model.types[link.ty].name;
             self.line(1, &format!("link {}: {target}{none}", link.name));
+            for case in &link.cases {
+                self.link_case(case);
+            }
         }
         for item in &ty.lets {
             let of = self.ty(self.model.exprs[item.value].ty);
@@ -207,6 +210,26 @@ impl<'m> Writer<'m> {
                 }
             }
         }
+    }
+
+    fn link_case(&mut self, case: &LinkCase) {
+        let names = Names { locals: &[], pair: None };
+        let text = |id: ExprId| self.formulas.text(id, names);
+        let mut line = match &case.target {
+            LinkTarget::Nobody => "none".to_string(),
+            LinkTarget::Agent(agent) => text(*agent),
+            LinkTarget::Nearest { binder, other, filter, key } => {
+                let bound = &self.model.binders[*binder];
+                let other = if *other { "other " } else { "" };
+                let set = &self.model.types[bound.ty].name;
+                let filter = filter.map_or(String::new(), |filter| format!(" where {}", text(filter)));
+                format!("nearest {} in {other}{set}{filter} by {}", bound.name, text(*key))
+            }
+        };
+        if let Some(condition) = case.condition {
+            line.push_str(&format!(" if {}", text(condition)));
+        }
+        self.line(2, &line);
     }
 
     fn creation(&mut self, create: &Create, names: Names, depth: usize) {

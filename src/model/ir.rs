@@ -279,8 +279,41 @@ pub struct Link {
     pub ty: TypeId,
     /// A parameter of agent type: never none.
     pub required: bool,
+    /// What it follows from, if it has an expression of its own: the first case that holds says whom it leads to.
+    pub cases: Vec<LinkCase>,
     /// Where it is declared.
     pub span: Span,
+}
+
+/// One case of the expression of a link.
+#[derive(Clone, Debug)]
+pub struct LinkCase {
+    /// When it holds; none: always.
+    pub condition: Option<ExprId>,
+    /// Whom the link leads to.
+    pub target: LinkTarget,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// Whom a link leads to.
+#[derive(Clone, Debug)]
+pub enum LinkTarget {
+    /// `none`.
+    Nobody,
+    /// An agent, which may be none.
+    Agent(ExprId),
+    /// `nearest o in other Car where filter by key`: whoever has the least key; none if nobody belongs to the range.
+    Nearest {
+        /// The name it binds, and the set.
+        binder: BinderId,
+        /// Without the agent itself.
+        other: bool,
+        /// `where`.
+        filter: Option<ExprId>,
+        /// `by`.
+        key: ExprId,
+    },
 }
 
 /// `let name = value`.

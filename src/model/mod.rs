@@ -31,6 +31,7 @@ mod call;
 mod quantifier;
 mod overrides;
 mod draw;
+mod links;
 mod define;
 mod create;
 mod actions;
@@ -101,8 +102,10 @@ pub fn check(ast: &Ast, sources: &mut SourceMap, files: &mut dyn Files, settings
     let mut context = context::Context::new(sources, settings);
     declare::declare(&mut context, ast);
     define::define(&mut context);
+    links::fill_links(&mut context);
     behaviour::fill_agents(&mut context);
     transition::fill_interactions(&mut context);
+    links::check_circles(&mut context);
     presence::check_presence(&mut context);
     initial::initial_values(&mut context);
     run::settle(&mut context, ast, settings);

@@ -172,7 +172,11 @@ impl<'a> Context<'a> {
                 Some(Member::Param(number)) => (names.params[number], &mut plan.params[number]),
                 Some(Member::State(number)) => (names.states[number], &mut plan.states[number]),
                 Some(Member::Discrete(number)) => (names.discretes[number], &mut plan.discretes[number]),
-                Some(Member::Link(_) | Member::Twice) => continue,
+                Some(Member::Link(number)) => {
+                    self.check_link_argument(plan.ty, number, &arg.name);
+                    continue;
+                }
+                Some(Member::Twice) => continue,
                 Some(Member::Let(_) | Member::Event) | None => {
                     let is_let = matches!(member, Some(Member::Let(_)));
                     plan.misspelt.extend(self.unknown_argument(plan.ty, &arg.name, is_let));

@@ -85,7 +85,7 @@ impl Engine<'_, '_> {
         let (transition, pair) = match self.guards.definition(instance).origin {
             Origin::Transition(transition) => (transition, false),
             Origin::Pair(pair) => (&pair.transition, true),
-            Origin::Claim(_) => return Ok(Effect::default()),
+            Origin::Claim(_) | Origin::Link(_) => return Ok(Effect::default()),
         };
         let mut effect = Effect::default();
         if let Some(target) = transition.target
@@ -415,7 +415,7 @@ pub fn claims(engine: &Engine<'_, '_>, instance: u32, slots: &Slots) -> Vec<(usi
     let (transition, pair): (&TransitionSystem, bool) = match engine.guards.definition(instance).origin {
         Origin::Transition(transition) => (transition, false),
         Origin::Pair(pair) => (&pair.transition, true),
-        Origin::Claim(_) => return claims,
+        Origin::Claim(_) | Origin::Link(_) => return claims,
     };
     claims.extend(transition.actions.writes.iter().map(|&(slot, target)| (slots[slot], target)));
     let mut moves = Vec::new();

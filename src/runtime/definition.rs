@@ -4,8 +4,8 @@
 //! aggregate is a condition too: its comparisons stand before those of the guard, those of inner aggregates first.
 
 use crate::codegen::program::{
-    Atom, ClaimSystem, Condition, Frame, Guard, Near, PairTransition, Program, Quantified, Range, Relation,
-    Slot, TransitionSystem, Trigger,
+    Atom, ClaimSystem, Condition, Frame, Guard, LinkUpdate, Near, PairTransition, Program, Quantified, Range,
+    Relation, Slot, TransitionSystem, Trigger,
 };
 use crate::runtime::fold;
 use crate::runtime::population::Agents;
@@ -28,6 +28,8 @@ pub enum Origin<'p> {
     Pair(&'p PairTransition),
     /// An invariant or an assert.
     Claim(&'p ClaimSystem),
+    /// A case of a link that follows from an expression.
+    Link(&'p LinkUpdate),
 }
 
 impl<'p> Origin<'p> {
@@ -36,7 +38,7 @@ impl<'p> Origin<'p> {
         match self {
             Origin::Transition(transition) => Some(transition),
             Origin::Pair(pair) => Some(&pair.transition),
-            Origin::Claim(_) => None,
+            Origin::Claim(_) | Origin::Link(_) => None,
         }
     }
 }
@@ -100,6 +102,9 @@ pub fn definitions<'p>(agents: &Agents<'p>, listing: Listing) -> Vec<Definition<
             let guard = guard_of(transition);
             let origin = Origin::Transition(transition);
             definitions.push(define(agents, origin, ty, transition.source, &transition.frame, guard));
+        }
+        for update in system.links.iter().flat_map(|link| &link.updates) {
+            definitions.push(define(agents, Origin::Link(update), ty, 0, &update.frame, Some(&update.stale)));
         }
         for (mode, node) in system.modes.iter().enumerate() {
             for claim in &node.claims {

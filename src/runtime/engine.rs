@@ -280,7 +280,7 @@ impl<'p, 'o> Engine<'p, 'o> {
                 match definition.origin {
                     Origin::Transition(transition) => Some((transition.label.clone(), firings)),
                     Origin::Pair(pair) => Some((pair.transition.label.clone(), firings)),
-                    Origin::Claim(_) => None,
+                    Origin::Claim(_) | Origin::Link(_) => None,
                 }
             });
         let methods =
@@ -374,6 +374,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             Origin::Transition(transition) => (&transition.label, transition.span),
             Origin::Pair(pair) => (&pair.transition.label, pair.transition.span),
             Origin::Claim(claim) => (claim.message.as_deref().unwrap_or("invariant"), claim.span),
+            Origin::Link(update) => (&update.label, update.span),
         }
     }
 }

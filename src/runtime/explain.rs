@@ -145,6 +145,7 @@ impl Engine<'_, '_> {
             Origin::Transition(transition) => (transition.label.clone(), transition.span),
             Origin::Pair(pair) => (pair.transition.label.clone(), pair.transition.span),
             Origin::Claim(claim) => (String::new(), claim.span),
+            Origin::Link(update) => (update.label.clone(), update.span),
         };
         let transition = (!is_claim).then_some(label);
         notes.undecided.push(Undecided {

@@ -264,6 +264,33 @@ impl<'p> Guards<'p> {
         }
     }
 
+    /// The instances of a link of an agent, in the order of its cases.
+    pub fn of_link(&self, agent: usize, link: usize) -> Vec<u32> {
+        let is_of_link = |&instance: &u32| matches!(self.definition(instance).origin, Origin::Link(update) if update.link == link);
+        let mut found: Vec<u32> = self.of_agent[agent].iter().copied().filter(is_of_link).collect();
+        found.sort_unstable_by_key(|&instance| self.instances[instance as usize].definition);
+        found
+    }
+
+    /// A link of an agent leads to somebody else: finds out which of its atoms nobody reads now. Returns those that somebody
+    /// reads who did not before.
+    pub fn spare(&mut self, agents: &Agents<'_>, agent: usize, link: usize) -> Vec<usize> {
+        let mut read = Vec::new();
+        for instance in self.of_link(agent, link) {
+            for index in self.atom_range(instance) {
+                let left_out = self.leaves_out(agents, index);
+                if left_out != self.atoms[index].left_out {
+                    let version = self.atoms[index].version + 1;
+                    self.atoms[index] = AtomState { version, left_out, ..AtomState::new(instance) };
+                    if !left_out {
+                        read.push(index);
+                    }
+                }
+            }
+        }
+        read
+    }
+
     /// Whether an instance has agents.
     pub fn is_listed(&self, instance: u32) -> bool {
         let root = self.instances[instance as usize].roots[0] as usize;
@@ -357,7 +384,13 @@ impl<'p> Guards<'p> {
     pub fn leaves_out(&self, agents: &Agents<'_>, index: usize) -> bool {
         let roots = self.roots(self.atoms[index].instance);
         let (_, bound) = self.bindings(agents, index);
-        bound.iter().any(|(binder, agent)| *agent == ABSENT || binder.other && roots.contains(agent))
+        let origin = self.definition(self.atoms[index].instance).origin;
+        // Whom a link leads to is not nearer than itself.
+        let led_to =
+            if let Origin::Link(update) = origin { agents.linked(roots[0], update.link) } else { ABSENT };
+        bound.iter().any(|&(binder, agent)| {
+            agent == ABSENT || agent == led_to || binder.other && roots.contains(&agent)
+        })
     }
 
     /// Whether an atom instance belongs to the filter of an aggregate.
@@ -419,7 +452,7 @@ fn size(agents: &Agents<'_>, definition: &Definition<'_>) -> u128 {
             let pairs = n * other;
             each * if pair.symmetric { pairs / 2 } else { pairs }
         }
-        Origin::Transition(_) | Origin::Claim(_) => each * n,
+        Origin::Transition(_) | Origin::Claim(_) | Origin::Link(_) => each * n,
     }
 }
 
@@ -428,7 +461,7 @@ fn size(agents: &Agents<'_>, definition: &Definition<'_>) -> u128 {
 fn for_each_binding(agents: &Agents<'_>, definition: &Definition<'_>, visit: &mut dyn FnMut([u32; 2])) {
     for &first in &agents.of_type[definition.ty] {
         match definition.origin {
-            Origin::Transition(_) | Origin::Claim(_) => visit([first as u32, u32::MAX]),
+            Origin::Transition(_) | Origin::Claim(_) | Origin::Link(_) => visit([first as u32, u32::MAX]),
             Origin::Pair(pair) => {
                 for &second in &agents.of_type[definition.frame.slots[1].ty()] {
                     if first != second && (!pair.symmetric || first < second) {

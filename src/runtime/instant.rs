@@ -56,10 +56,13 @@ impl Engine<'_, '_> {
             if self.notes.is_some() {
                 self.explain_writes(&written, &fired);
             }
-            let woken = self.wake(&written)?;
+            let mut woken = self.wake(&written)?;
             for &instance in &fired {
                 self.settle_fired(instance, &written);
             }
+            woken.extend(self.refresh_links(&woken)?);
+            woken.sort_unstable();
+            woken.dedup();
             for &instance in fired.iter().chain(&woken) {
                 self.rearm(instance);
             }
@@ -133,7 +136,7 @@ impl Engine<'_, '_> {
         let (transition, depth) = match self.guards.definition(candidate.instance).origin {
             Origin::Transition(transition) => (transition, transition.depth),
             Origin::Pair(pair) => (&pair.transition, 0),
-            Origin::Claim(_) => unreachable!("claims are no candidates"),
+            Origin::Claim(_) | Origin::Link(_) => unreachable!("only transitions are candidates"),
         };
         let mut priority = 0.0;
         if let Some(function) = transition.priority {
@@ -193,13 +196,13 @@ impl Engine<'_, '_> {
         self.carry_out(effects)
     }
 
-    fn count_firing(&mut self, instance: u32) -> Result<(), Failure> {
+    pub fn count_firing(&mut self, instance: u32) -> Result<(), Failure> {
         let definition = self.guards.instances[instance as usize].definition as usize;
         self.firings[definition] += 1;
         let scheduled = match self.guards.definition(instance).origin {
             Origin::Transition(transition) => matches!(transition.trigger, Trigger::Every { .. }),
             Origin::Pair(pair) => matches!(pair.transition.trigger, Trigger::Every { .. }),
-            Origin::Claim(_) => false,
+            Origin::Claim(_) | Origin::Link(_) => false,
         };
         let time = self.present.time;
         let finding = self.repetitions.fired(instance, time, scheduled);
@@ -259,7 +262,7 @@ impl Engine<'_, '_> {
 
     /// A guard that has just fired looks at its boundary by the rates along the new flow (rule 3): where it had its root,
     /// and where a reset may have put it there.
-    fn settle_fired(&mut self, instance: u32, written: &Written) {
+    pub fn settle_fired(&mut self, instance: u32, written: &Written) {
         if !self.guards.instances[instance as usize].active {
             return;
         }

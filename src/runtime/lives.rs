@@ -143,6 +143,7 @@ impl Engine<'_, '_> {
                 born.push(self.bear(&conceived)?);
             }
             self.present.forget();
+            self.set_links(&born);
             let entered: Vec<Vec<usize>> = born.iter().map(|&agent| self.modes_of(agent)).collect();
             let entries: Vec<(usize, &[usize])> =
                 born.iter().zip(&entered).map(|(&agent, modes)| (agent, &modes[..])).collect();

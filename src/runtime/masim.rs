@@ -78,6 +78,7 @@ impl Engine<'_, '_> {
     pub fn begin(&mut self) -> Result<(), Failure> {
         self.present.go(0.0);
         let all = self.agents.living();
+        self.set_links(&all);
         self.set_locks(all.iter().copied());
         let mut written = Written::default();
         for group in self.groups.divide(&mut self.agents, &all, 0.0, &|_| None) {
@@ -95,6 +96,7 @@ impl Engine<'_, '_> {
         self.begin_lists()?;
         self.arm_all()?;
         let instances = 0..self.guards.instances.len() as u32;
+        self.refresh_links(&instances.clone().collect::<Vec<u32>>())?;
         let enabled = instances.clone().filter(|&instance| self.enabled(instance));
         let candidates = enabled.map(|instance| Candidate { instance, pulse: None }).collect();
         self.instant(candidates)?;

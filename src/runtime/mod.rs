@@ -73,6 +73,7 @@ mod arm;
 mod near_pairs;
 mod sleep;
 mod hot;
+mod links;
 mod instant;
 mod certify;
 mod explain;

@@ -406,6 +406,7 @@ fn longest_chain(program: &Program) -> usize {
             mode.claims.iter().for_each(|claim| visit(&claim.frame));
         }
         ty.transitions.iter().for_each(|transition| visit(&transition.frame));
+        ty.links.iter().flat_map(|link| &link.updates).for_each(|update| visit(&update.frame));
     }
     let pairs = program.interactions.iter().flat_map(|interaction| &interaction.transitions);
     pairs.for_each(|pair| visit(&pair.transition.frame));
