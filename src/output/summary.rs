@@ -17,8 +17,9 @@ pub fn summary(report: &Report<'_>) -> String {
     line(
         &mut text,
         format_args!(
-            "  {}, {}, {} ({} rejected), {}",
+            "  {}{}, {}, {} ({} rejected), {}",
             counted(report.cast.agents.len() as u64, "agent"),
+            turnover(report),
             counted(stats.events, "event"),
             counted(stats.steps, "step"),
             stats.rejected,
@@ -46,6 +47,17 @@ pub fn summary(report: &Report<'_>) -> String {
         line(&mut text, format_args!("  wrote {}", report.files.join(", ")));
     }
     text
+}
+
+/// How many agents have come and gone, if any.
+fn turnover(report: &Report<'_>) -> String {
+    let types = &report.outcome.stats.types;
+    let (created, destroyed): (u64, u64) =
+        types.iter().fold((0, 0), |sum, ty| (sum.0 + ty.created, sum.1 + ty.destroyed));
+    match (created, destroyed) {
+        (0, 0) => String::new(),
+        _ => format!(" ({created} created, {destroyed} destroyed)"),
+    }
 }
 
 /// `ended at t = 30 s`, and why.

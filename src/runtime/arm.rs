@@ -316,12 +316,15 @@ impl<'p> Engine<'p, '_> {
         }
         reading.sort_unstable();
         reading.dedup();
+        let mut reach: Vec<usize> = concerned.iter().flat_map(|&agent| self.agents.readers(agent)).collect();
+        reach.sort_unstable();
+        reach.dedup();
         for instance in reading {
             if !self.guards.instances[instance as usize].active {
                 continue;
             }
             let fresh = armed.contains(&instance);
-            for index in self.guards.atom_range(instance) {
+            for index in self.concerned_atoms(instance, &reach) {
                 if self.guards.atoms[index].left_out || !fresh && self.stays_far(index, written) {
                     continue;
                 }
@@ -342,6 +345,22 @@ impl<'p> Engine<'p, '_> {
             self.note_rising(instance);
         }
         Ok(woken)
+    }
+
+    /// The atoms of an instance that may read one of these agents, or reach one by links: all, if it is one of its own; else
+    /// those that are bound to one, if it has no aggregates.
+    fn concerned_atoms(&self, instance: u32, reach: &[usize]) -> Vec<usize> {
+        let definition = self.guards.definition(instance);
+        let is_own = self.guards.roots(instance).iter().any(|root| reach.binary_search(root).is_ok());
+        if is_own || !definition.folds.is_empty() || definition.quantified.is_empty() {
+            return self.guards.atom_range(instance).collect();
+        }
+        let bound = reach.iter().filter(|&&agent| definition.binds(self.agents.agents[agent].ty));
+        let mut atoms: Vec<usize> =
+            bound.flat_map(|&agent| self.guards.atoms_at(&self.agents, instance, agent)).collect();
+        atoms.sort_unstable();
+        atoms.dedup();
+        atoms
     }
 
     /// Arms the guards of agents that have come to be, and has those that range over them look at them; nothing is held.

@@ -42,4 +42,5 @@ mod units;
 mod robust;
 mod windows;
 mod aggregates;
+mod lives;
 mod limits;

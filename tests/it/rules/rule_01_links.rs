@@ -214,7 +214,7 @@ const HASH: &str = "fn hash(i: real, k: real) = mod(sin(12.9898*(i + 1) + 78.233
 #[test]
 fn rule_01_generated_links_are_those_found_by_looking_at_all() {
     let mut n_led = 0;
-    for seed in 0..8 {
+    for seed in 0..3 {
         let text = format!(
             "{HASH}
              agent Car(k: real) {{ state x = 60*hash(k, 1)  discrete lane: int = floor(2*hash(k, 2)), v = 2 + 8*hash(k, 3), n = 0
@@ -252,5 +252,5 @@ fn rule_01_generated_links_are_those_found_by_looking_at_all() {
             n_led += usize::from(lead >= 0.0);
         }
     }
-    assert!(n_led > 500, "{n_led}");
+    assert!(n_led > 200, "{n_led}");
 }
