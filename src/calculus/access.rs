@@ -1,6 +1,6 @@
 //! What is asked of a system in more than one place: its lists of actions, and who is made and removed by them.
 
-use crate::calculus::system::{ActionList, ActionStep, Birth, FunctionId, Source, System};
+use crate::calculus::system::{ActionList, ActionStep, AgentSystem, Birth, FunctionId, Source, System};
 
 impl System {
     /// All lists of actions of agents, with their types; then those of interactions.
@@ -62,5 +62,17 @@ impl Source {
             Source::Number(function) => std::slice::from_ref(function),
             Source::Draw { parameters, .. } => parameters,
         }
+    }
+}
+
+impl AgentSystem {
+    /// A mode and those around it, inner first.
+    pub fn around(&self, mode: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::successors(Some(mode), |&mode| self.modes[mode].parent)
+    }
+
+    /// Whether a mode is another one, or inside it.
+    pub fn is_inside(&self, mode: usize, other: usize) -> bool {
+        self.around(mode).any(|around| around == other)
     }
 }

@@ -105,6 +105,7 @@ fn columns(ty: &AgentType) -> AgentSystem {
             n_params: ty.params.len(),
             n_discretes: ty.discretes.len(),
             n_links: ty.links.len(),
+            n_histories: 0,
             n_locks: 0,
         },
         states: ty.states.iter().map(column).collect(),

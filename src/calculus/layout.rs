@@ -4,8 +4,8 @@ use crate::math::Scale;
 
 /// The columns of an agent type.
 ///
-/// Auxiliary columns in order: number, mode, time of entry, parameters, discretes, links, locks. Numbers of agents are
-/// held as reals, -1 for none. A lock holds the branch that a kink of the flow has taken (rule 15).
+/// Auxiliary columns in order: number, mode, time of entry, parameters, discretes, links, histories, locks. Numbers of agents are
+/// held as reals, -1 for none. A history holds the number of a mode: the submode that was active last. A lock holds the branch that a kink of the flow has taken (rule 15).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
     /// How many states.
@@ -16,6 +16,8 @@ pub struct Layout {
     pub n_discretes: usize,
     /// How many links.
     pub n_links: usize,
+    /// How many modes remember which of their submodes was active last.
+    pub n_histories: usize,
     /// How many locks (the most that any mode needs).
     pub n_locks: usize,
 }
@@ -40,9 +42,13 @@ impl Layout {
     pub fn link(&self, k: usize) -> usize {
         3 + self.n_params + self.n_discretes + k
     }
+    /// Column of history k.
+    pub fn history(&self, k: usize) -> usize {
+        3 + self.n_params + self.n_discretes + self.n_links + k
+    }
     /// Column of lock k.
     pub fn lock(&self, k: usize) -> usize {
-        3 + self.n_params + self.n_discretes + self.n_links + k
+        self.history(self.n_histories) + k
     }
     /// How many auxiliary columns there are.
     pub fn n_aux(&self) -> usize {

@@ -18,7 +18,9 @@ pub use crate::calculus::range::{Near, Range};
 pub use crate::calculus::relation::Relation;
 pub use crate::calculus::slot::Slot;
 use crate::math::draw::Distribution;
-pub use crate::model::ir::{Aggregate, Block, Instance, Integrator, Population, Record, Run, VarRef};
+pub use crate::model::ir::{
+    Aggregate, Block, Destination, Inside, Instance, Integrator, Population, Record, Run, VarRef,
+};
 
 /// Names a [`Function`].
 pub type FunctionId = Idx<Function>;
@@ -211,8 +213,12 @@ pub struct ModeSystem {
     pub parent: Option<usize>,
     /// 0 for the root.
     pub depth: usize,
-    /// The leaf that is entered when this mode is (itself, for a leaf).
-    pub initial_leaf: usize,
+    /// The submode that is entered by default; none for a leaf.
+    pub initial: Option<usize>,
+    /// The auxiliary column that remembers which submode was active last; only where a `M.history` needs it.
+    pub history: Option<usize>,
+    /// For a leaf, the modes that are active in it, outer first: the root, ..., itself.
+    pub active: Vec<usize>,
     /// The equations of a leaf.
     pub flow: Option<Flow>,
     /// Invariants and asserts declared in this mode, without those of enclosing modes.
@@ -431,8 +437,8 @@ pub struct TransitionSystem {
     pub priority: Option<FunctionId>,
     /// When it fires.
     pub trigger: Trigger,
-    /// The mode it leads to, as written.
-    pub target: Option<usize>,
+    /// Where it leads.
+    pub target: Option<Destination>,
     /// What it does; shares the transition's frame.
     pub actions: ActionList,
     /// The agents that guard, priority and actions read.
@@ -502,8 +508,8 @@ pub enum ActionStep {
     Goto {
         /// Who.
         slot: usize,
-        /// Into which mode, as written.
-        target: usize,
+        /// Into which mode.
+        target: Destination,
         /// Where it stands.
         span: Span,
     },

@@ -1,8 +1,8 @@
 //! What is asked of a model in more than one place: its lists of actions, the names of its agents and variables.
 
 use super::ir::{
-    Action, AgentType, Create, Draw, ExprId, Given, Integrator, LinkCase, LinkTarget, Model, Population, Run,
-    VarRef,
+    Action, AgentType, Create, Draw, ExprId, Given, Integrator, LinkCase, LinkTarget, ModeId, Model,
+    Population, Run, VarRef,
 };
 
 impl Model {
@@ -38,6 +38,11 @@ fn add_creations<'m>(list: &'m [Action], found: &mut Vec<&'m Create>) {
 }
 
 impl AgentType {
+    /// Whether a mode is another one, or inside it.
+    pub fn is_inside(&self, mode: ModeId, other: ModeId) -> bool {
+        std::iter::successors(Some(mode), |&mode| self.modes[mode].parent).any(|around| around == other)
+    }
+
     /// The name of a variable.
     pub fn variable_name(&self, variable: VarRef) -> &str {
         match variable {

@@ -19,6 +19,7 @@ use crate::runtime::failure::Failure;
 use crate::runtime::fate::Fate;
 use crate::runtime::guards::Origin;
 use crate::runtime::population::{ABSENT, Agent, Slots};
+use crate::runtime::route::begin_histories;
 use crate::runtime::solve::segment::Segment;
 use crate::runtime::truth;
 
@@ -144,9 +145,8 @@ impl Engine<'_, '_> {
             }
             self.present.forget();
             self.set_links(&born);
-            let entered: Vec<Vec<usize>> = born.iter().map(|&agent| self.modes_of(agent)).collect();
             let entries: Vec<(usize, &[usize])> =
-                born.iter().zip(&entered).map(|(&agent, modes)| (agent, &modes[..])).collect();
+                born.iter().map(|&agent| (agent, self.agents.mode(agent).active.as_slice())).collect();
             written.born.extend(&born);
             self.run_entries(&entries, written)?;
         }
@@ -204,6 +204,7 @@ impl Engine<'_, '_> {
         row.aux[Layout::MODE] = birth.mode as f64;
         row.aux[Layout::ENTRY] = self.present.time;
         (0..layout.n_links).for_each(|link| row.aux[layout.link(link)] = -1.0);
+        begin_histories(system, birth.mode, &mut row.aux);
         given.iter().for_each(|&(variable, value)| row.set(layout, variable, value));
         let Initials { values, .. } = &system.initials;
         for (variable, source) in values {

@@ -84,9 +84,8 @@ impl Engine<'_, '_> {
         for group in self.groups.divide(&mut self.agents, &all, 0.0, &|_| None) {
             self.queue_clock(group);
         }
-        let entered: Vec<Vec<usize>> = all.iter().map(|&agent| self.modes_of(agent)).collect();
         let entries: Vec<(usize, &[usize])> =
-            all.iter().zip(&entered).map(|(&agent, modes)| (agent, &modes[..])).collect();
+            all.iter().map(|&agent| (agent, self.agents.mode(agent).active.as_slice())).collect();
         self.run_entries(&entries, &mut written)?;
         self.turn_over(&mut written)?;
         self.regroup(&mut written);
@@ -104,15 +103,6 @@ impl Engine<'_, '_> {
             .filter(|&instance| matches!(self.guards.definition(instance).origin, Origin::Claim(_)))
             .collect();
         self.judge_claims(&claims)
-    }
-
-    /// The modes an agent is in, outer ones first.
-    pub fn modes_of(&self, agent: usize) -> Vec<usize> {
-        let modes = &self.program.types[self.agents.agents[agent].ty].modes;
-        let above = std::iter::successors(Some(self.agents.agents[agent].mode), |&mode| modes[mode].parent);
-        let mut inside: Vec<usize> = above.collect();
-        inside.reverse();
-        inside
     }
 
     /// The end: the last rows, and the state of every agent at T (rule 12).

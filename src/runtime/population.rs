@@ -12,6 +12,7 @@ use smallvec::SmallVec;
 use crate::codegen::program::{Flow, Frame, Layout, ModeSystem, Program, Slot};
 use crate::runtime::cold::Cold;
 use crate::runtime::observe::Who;
+use crate::runtime::route::begin_histories;
 use crate::runtime::solve::segment::Segment;
 
 /// How many seats a type gets that has had none.
@@ -91,7 +92,7 @@ impl<'p> Agents<'p> {
         for (number, instance) in program.population.agents.iter().enumerate() {
             let ty = instance.ty.index();
             let system = &program.types[ty];
-            let mode = system.modes[instance.mode.index()].initial_leaf;
+            let mode = instance.mode.index();
             let mut aux = vec![0.0; system.layout.n_aux()];
             aux[Layout::NUMBER] = number as f64;
             aux[Layout::MODE] = mode as f64;
@@ -102,6 +103,7 @@ impl<'p> Agents<'p> {
             for (column, value) in aux[first..].iter_mut().zip(columns) {
                 *column = value;
             }
+            begin_histories(system, mode, &mut aux);
             let seat = of_type[ty].len();
             of_type[ty].push(number);
             let segment = Segment::at(0.0, &instance.states);

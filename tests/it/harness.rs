@@ -16,6 +16,7 @@ use hyc::runtime::observe::{
     Cause, Cell, End, Explanation, FalseAssert, Last, Observer, Outcome, Row, ShownComparison, Stats,
     Undecided, Who,
 };
+use hyc::runtime::paper::Form;
 
 /// A model with what the command line says about its run.
 #[derive(Default)]
@@ -105,6 +106,17 @@ pub struct Run {
 #[track_caller]
 pub fn simulate(text: &str) -> Run {
     Case::new(text).run()
+}
+
+/// Runs a model by both forms of the engine, which must find the same events at the same times.
+#[track_caller]
+pub fn simulate_by_both_forms(text: &str) -> Run {
+    let [fast, plain] =
+        [Form::Fast, Form::Plain].map(|form| Case::new(text).algorithm(Algorithm::Masim(form)).run());
+    assert_eq!(fast.log(), plain.log(), "the forms differ:\n{text}");
+    let times = |run: &Run| run.events.iter().map(|event| event.time).collect::<Vec<_>>();
+    all_near(&times(&fast), &times(&plain), 1e-6);
+    plain
 }
 
 /// Runs a model that must be right, and must end in an error.

@@ -407,7 +407,7 @@ impl<'a> Reference<'a> {
         let transition = self.transition(instance);
         let agents = self.instances[instance].agents;
         let mut moves: Vec<(usize, ModeId)> =
-            transition.target.iter().map(|target| (agents[0], *target)).collect();
+            transition.target.iter().map(|target| (agents[0], target.mode)).collect();
         let (mut writes, mut all) = (Vec::new(), Vec::new());
         let mut scope = self.scope(&self.world, instance);
         let decided = self.instances[instance].boundary.decided(&mut scope, &self.world);
@@ -420,7 +420,7 @@ impl<'a> Reference<'a> {
         scope.decided = &[];
         for action in &transition.actions {
             if let Action::Goto { participant, target, .. } = action {
-                moves.push((agents[*participant], *target));
+                moves.push((agents[*participant], target.mode));
             }
         }
         for (agent, target) in &moves {
