@@ -1,8 +1,8 @@
 //! What is asked of a model in more than one place: its lists of actions, the names of its agents and variables.
 
 use super::ir::{
-    Action, AgentType, Create, Draw, ExprId, Given, Integrator, LinkCase, LinkTarget, ModeId, Model,
-    Population, Run, VarRef,
+    Action, AgentType, Create, Destination, Draw, ExprId, Given, Inside, Integrator, LinkCase, LinkTarget,
+    ModeId, Model, Population, Run, VarRef,
 };
 
 impl Model {
@@ -112,5 +112,15 @@ impl LinkCase {
             }
         }
         all
+    }
+}
+
+impl Destination {
+    /// What stands behind the mode's path: nothing, or `.history`.
+    pub fn suffix(self) -> &'static str {
+        match self.inside {
+            Inside::Initial => "",
+            Inside::History => ".history",
+        }
     }
 }

@@ -8,7 +8,7 @@ use crate::math::draw::Distribution;
 use crate::math::{Op, Scale};
 pub use crate::model::applied::Operands;
 pub use crate::model::integrator::Integrator;
-pub use crate::model::kinds::{Aggregate, Quantifier};
+pub use crate::model::kinds::{Aggregate, Inside, ParamValue, Quantifier};
 use crate::model::limits::Limits;
 
 /// Names an [`Expr`].
@@ -60,15 +60,6 @@ pub struct Param {
     pub value: ParamValue,
     /// Where it is declared.
     pub span: Span,
-}
-
-/// The value of a parameter.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ParamValue {
-    /// A number, SI; booleans are 1 and 0.
-    Number(f64),
-    /// A text.
-    Text(String),
 }
 
 /// The type of a value.
@@ -416,25 +407,6 @@ pub struct Destination {
     pub mode: ModeId,
     /// Which of its submodes.
     pub inside: Inside,
-}
-
-impl Destination {
-    /// What stands behind the mode's path: nothing, or `.history`.
-    pub fn suffix(self) -> &'static str {
-        match self.inside {
-            Inside::Initial => "",
-            Inside::History => ".history",
-        }
-    }
-}
-
-/// Which submode of a mode is entered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Inside {
-    /// The initial one.
-    Initial,
-    /// `M.history`: the one that was active last, at *its* initial one; the initial one if the mode was never active.
-    History,
 }
 
 /// What makes a transition fire.
