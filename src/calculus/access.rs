@@ -71,6 +71,11 @@ impl AgentSystem {
         std::iter::successors(Some(mode), |&mode| self.modes[mode].parent)
     }
 
+    /// The region that a mode is in; none for the root of an agent with regions.
+    pub fn region_of(&self, mode: usize) -> Option<usize> {
+        self.around(mode).find(|around| self.regions.contains(around))
+    }
+
     /// Whether a mode is another one, or inside it.
     pub fn is_inside(&self, mode: usize, other: usize) -> bool {
         self.around(mode).any(|around| around == other)

@@ -118,18 +118,16 @@ fn collect_writes(draft: &Draft, scope: &Scope, steps: &[ActionStep], writes: &m
     for step in steps {
         match step {
             ActionStep::Assign { slot, target, .. } => writes.push((*slot, *target)),
-            ActionStep::Goto { slot, .. } => writes.push((*slot, Target::Mode)),
             ActionStep::If { then, otherwise, .. } => {
                 collect_writes(draft, scope, then, writes);
                 collect_writes(draft, scope, otherwise, writes);
             }
             ActionStep::Destroy { slot, .. } => {
                 let layout = draft.layout(scope.frame.slots[*slot].ty());
-                writes.push((*slot, Target::Mode));
                 writes.extend((0..layout.n_states).map(|k| (*slot, Target::State(k))));
                 writes.extend((0..layout.n_discretes).map(|k| (*slot, Target::Aux(layout.discrete(k)))));
             }
-            ActionStep::Stop { .. } | ActionStep::Create(_) => {}
+            ActionStep::Goto { .. } | ActionStep::Stop { .. } | ActionStep::Create(_) => {}
         }
     }
 }

@@ -116,6 +116,7 @@ fn columns(ty: &AgentType) -> AgentSystem {
         declared: ty.declared.clone(),
         initials: Initials::default(),
         modes: Vec::new(),
+        regions: Vec::new(),
         transitions: Vec::new(),
     }
 }

@@ -412,7 +412,6 @@ impl<'a> Block<'a> {
                     let column = match target {
                         Target::State(k) => sheet.state(*slot, *k),
                         Target::Aux(k) => sheet.aux(*slot, *k),
-                        Target::Mode => unreachable!("modes are not assigned"),
                     };
                     self.line(indent, format!("{column} := {}", self.value(sheet, *value)));
                 }

@@ -1,4 +1,4 @@
-//! The equations of a leaf mode: rates with their kinks locked, second rates, the Jacobian, who is coupled.
+//! The equations of a configuration, which is a leaf mode or one of each region: rates with their kinks locked, second rates, the Jacobian, who is coupled.
 
 use crate::base::Span;
 use crate::calculus::build::{self, Halt};
@@ -11,10 +11,10 @@ use crate::calculus::kinks;
 use crate::calculus::system::{Flow, JacobianEntry};
 use crate::model::ir::{ExprId, ModeId, TypeId};
 
-/// The flow of a leaf.
-pub fn flow(draft: &mut Draft, ty: TypeId, leaf: ModeId, name: &str) -> Result<Flow, Error> {
+/// The flow with these modes active.
+pub fn flow(draft: &mut Draft, ty: TypeId, active: &[usize], name: &str) -> Result<Flow, Error> {
     let mut scope = Scope::of_self(ty);
-    let equations = equations(draft, ty, leaf);
+    let equations = equations(draft, ty, active);
     let (exprs, spans): (Vec<ExprId>, Vec<Span>) = equations.into_iter().unzip();
     scope.equations = Some(exprs.clone());
     let mut plain = Vec::with_capacity(exprs.len());
@@ -49,17 +49,18 @@ pub fn flow(draft: &mut Draft, ty: TypeId, leaf: ModeId, name: &str) -> Result<F
 }
 
 /// The equation of every state, in order; the model has checked that each has one.
-fn equations(draft: &Draft, ty: TypeId, leaf: ModeId) -> Vec<(ExprId, Span)> {
+fn equations(draft: &Draft, ty: TypeId, active: &[usize]) -> Vec<(ExprId, Span)> {
     let ty = &draft.model.types[ty];
     let mut found: Vec<Option<(ExprId, Span)>> = vec![None; ty.states.len()];
-    let mut mode = Some(leaf);
-    while let Some(id) = mode {
-        for &(state, rate, span) in &ty.modes[id].flow {
+    for &mode in active {
+        for &(state, rate, span) in &ty.modes[ModeId::new(mode)].flow {
             found[state] = Some((rate, span));
         }
-        mode = ty.modes[id].parent;
     }
-    found.into_iter().map(|equation| equation.expect("every state has one equation in every leaf")).collect()
+    found
+        .into_iter()
+        .map(|equation| equation.expect("every state has one equation in every configuration"))
+        .collect()
 }
 
 /// The entries of a row of df/dx that are not always 0.

@@ -74,6 +74,4 @@ pub enum Target {
     State(usize),
     /// A discrete variable, by its auxiliary column (absolute index).
     Aux(usize),
-    /// The mode.
-    Mode,
 }

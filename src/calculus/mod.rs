@@ -64,7 +64,7 @@ pub fn derive(model: &Model) -> Result<System, Vec<Diagnostic>> {
     births::initials(&mut draft);
     links::updates(&mut draft);
     let mut interactions = agents::interactions(&mut draft);
-    agents::number_declarations(&mut draft.types, &mut interactions);
+    agents::number_declarations(&model.files, &mut draft.types, &mut interactions);
     draft.finish(interactions).map(near::ranges)
 }
 

@@ -116,7 +116,6 @@ impl<'a> Former<'a> {
                 let column = match target {
                     Target::State(k) => [0, *k],
                     Target::Aux(k) => [1, *k],
-                    Target::Mode => [2, 0],
                 };
                 self.part("assign", vec![self.places[*slot], column[0], column[1]], vec![value])
             }

@@ -126,8 +126,11 @@ pub struct AgentSystem {
     pub declared: Vec<(String, VarRef)>,
     /// What its agents start with; empty if none of them are created during a run.
     pub initials: Initials,
-    /// The tree of modes, numbered as in the model; 0 is the root.
+    /// The tree of modes, numbered as in the model; 0 is the root. Behind it, for an agent with regions, its configurations: the
+    /// combinations of a leaf of each region. In an agent without regions the leaves are the configurations.
     pub modes: Vec<ModeSystem>,
+    /// The regions; the root is the only one of an agent without regions.
+    pub regions: Vec<usize>,
     /// Transitions of all modes in order of declaration.
     pub transitions: Vec<TransitionSystem>,
 }
@@ -202,24 +205,26 @@ pub enum LetValue {
     Condition(Guard),
 }
 
-/// A node of the tree of modes.
+/// A node of the tree of modes, or a configuration.
 #[derive(Clone, Debug)]
 pub struct ModeSystem {
     /// Its name.
     pub name: String,
-    /// `Drive.Cruise`; empty for the root.
+    /// `Drive.Cruise`; empty for the root; `Motion.Drive|Lamp.Off` for a configuration of regions.
     pub path: String,
-    /// None for the root.
+    /// None for the root, and for a configuration of regions.
     pub parent: Option<usize>,
     /// 0 for the root.
     pub depth: usize,
-    /// The submode that is entered by default; none for a leaf.
+    /// The submode that is entered by default; none for a leaf, and for the root of an agent with regions.
     pub initial: Option<usize>,
+    /// For a leaf, what it adds to the number of a configuration: its own number in an agent without regions.
+    pub offset: usize,
     /// The auxiliary column that remembers which submode was active last; only where a `M.history` needs it.
     pub history: Option<usize>,
-    /// For a leaf, the modes that are active in it, outer first: the root, ..., itself.
+    /// For a configuration, the modes that are active in it, outer first: the root, ..., its leaves.
     pub active: Vec<usize>,
-    /// The equations of a leaf.
+    /// The equations of a configuration.
     pub flow: Option<Flow>,
     /// Invariants and asserts declared in this mode, without those of enclosing modes.
     pub claims: Vec<ClaimSystem>,
@@ -231,7 +236,7 @@ pub struct ModeSystem {
     pub transitions: Vec<usize>,
 }
 
-/// The differential equations of a leaf mode.
+/// The differential equations of a configuration.
 #[derive(Clone, Debug)]
 pub struct Flow {
     /// The agents it reads.

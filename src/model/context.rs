@@ -5,6 +5,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::Files;
 use super::evaluate::Evaluator;
 use super::ir::{
     BinderId, Expr, ExprId, ExprKind, FunctionId, InteractionId, ModeId, Model, Operands, TypeId, VarRef,
@@ -12,7 +13,7 @@ use super::ir::{
 use super::limits;
 use super::operands::for_each_operand;
 use super::types::{Quantity, Slot, Ty};
-use crate::base::{Diagnostic, SourceMap, Span};
+use crate::base::{Diagnostic, FileId, SourceMap, Span};
 use crate::math::Op;
 use crate::syntax::ast;
 
@@ -169,8 +170,8 @@ pub(super) struct AgentNames<'a> {
     pub discretes: Vec<Slot>,
     /// Where the dimensions of the `let`s come from, by their numbers in the product.
     pub lets: Vec<Quantity>,
-    /// The modes' texts, by number; none for the root.
-    pub modes: Vec<Option<&'a ast::Mode>>,
+    /// The parts of the texts of modes and regions, by number; none for the root.
+    pub modes: Vec<Option<&'a [ast::BodyItem]>>,
     /// The `let`s of each mode; those of the root are members.
     pub mode_lets: Vec<FxHashMap<&'a str, usize>>,
     /// Parts of it are not supported, so what seems to be missing may be there.
@@ -258,6 +259,10 @@ pub(super) struct Goal {
 pub(super) struct Context<'a> {
     /// The texts; the command line's values are added when they are wrong.
     pub sources: &'a mut SourceMap,
+    /// Where data files come from.
+    pub files: &'a mut dyn Files,
+    /// Data files by their names, once they are opened.
+    pub opened: FxHashMap<String, FileId>,
     /// The product as far as it is there.
     pub model: Model,
     /// By expression.
@@ -286,7 +291,7 @@ pub(super) struct Context<'a> {
     pub overrides: Vec<(String, String)>,
     /// Parameters and discrete variables whose values some block takes from a data file.
     pub from_data: FxHashSet<(TypeId, VarRef)>,
-    /// Something is imported, so what seems to be missing may be there.
+    /// Something imported could not be read, so what seems to be missing may be there.
     pub imports: bool,
     /// What has been found wrong.
     pub diagnostics: Vec<Diagnostic>,
@@ -296,9 +301,11 @@ pub(super) struct Context<'a> {
 
 impl<'a> Context<'a> {
     /// A context without names.
-    pub fn new(sources: &'a mut SourceMap, settings: &super::Settings) -> Self {
+    pub fn new(sources: &'a mut SourceMap, files: &'a mut dyn Files, settings: &super::Settings) -> Self {
         Self {
             sources,
+            files,
+            opened: FxHashMap::default(),
             model: Model { limits: settings.limits, ..Model::default() },
             facts: Vec::new(),
             quantities: FxHashMap::default(),

@@ -1,4 +1,4 @@
-//! Pass 1: every name that the file declares, with types, units and the trees of modes; no expression is read yet.
+//! Pass 1: every name that the files declare, with types, units and the trees of modes; no expression is read yet.
 
 use rustc_hash::FxHashMap;
 
@@ -12,8 +12,8 @@ use crate::base::{Arena, Span};
 use crate::syntax::ast::{self, AgentItem, BodyItem, Item, VariableKind};
 
 /// Declares everything.
-pub(super) fn declare<'a>(context: &mut Context<'a>, file: &'a ast::Ast) {
-    context.declare_globals(file);
+pub(super) fn declare<'a>(context: &mut Context<'a>, items: &[&'a Item]) {
+    context.declare_globals(items);
     for number in 0..context.agents.len() {
         context.declare_members(TypeId::new(number));
     }
@@ -23,14 +23,11 @@ pub(super) fn declare<'a>(context: &mut Context<'a>, file: &'a ast::Ast) {
 }
 
 impl<'a> Context<'a> {
-    fn declare_globals(&mut self, file: &'a ast::Ast) {
+    fn declare_globals(&mut self, items: &[&'a Item]) {
         let (mut system, mut run) = (None, None);
-        for item in &file.items {
+        for item in items {
             match item {
-                Item::Import(import) => {
-                    self.imports = true;
-                    self.refuse("imports", import.span);
-                }
+                Item::Import(_) => {}
                 Item::Property(property) => self.refuse("properties", property.span),
                 Item::Param(param) => self.declare_definition(&param.name, Body::Param(param)),
                 Item::Let(item) => self.declare_definition(&item.name, Body::Let(item)),
@@ -88,6 +85,7 @@ impl<'a> Context<'a> {
             depth: 0,
             children: Vec::new(),
             initial: None,
+            is_region: false,
             flow: Vec::new(),
             invariants: Vec::new(),
             asserts: Vec::new(),
@@ -144,10 +142,7 @@ impl<'a> Context<'a> {
                     self.refuse("events", event.span);
                     self.declare_member(ty, &event.name, Member::Event);
                 }
-                AgentItem::Region(region) => {
-                    self.agents[ty.index()].incomplete = true;
-                    self.refuse("regions", region.span);
-                }
+                AgentItem::Region(_) => {}
                 AgentItem::Body(BodyItem::Let(item)) => {
                     let number = self.add_definition(&item.name, Body::AgentLet(ty, ModeId::new(0), item));
                     self.declare_member(ty, &item.name, Member::Let(number));
@@ -159,7 +154,13 @@ impl<'a> Context<'a> {
             AgentItem::Body(item) => Some(item),
             AgentItem::Variables(_) | AgentItem::Link(_) | AgentItem::Event(_) | AgentItem::Region(_) => None,
         });
+        let regions = item.items.iter().filter_map(|part| match part {
+            AgentItem::Region(region) => Some(region),
+            AgentItem::Variables(_) | AgentItem::Link(_) | AgentItem::Event(_) | AgentItem::Body(_) => None,
+        });
+        self.declare_regions(ty, regions);
         self.declare_modes(ty, ModeId::new(0), body);
+        self.check_regions(ty);
     }
 
     fn declare_member(&mut self, ty: TypeId, name: &'a ast::Name, member: Member) {

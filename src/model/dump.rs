@@ -114,7 +114,8 @@ impl<'m> Writer<'m> {
             None => depth,
             Some(parent) => {
                 let initial = if ty.modes[parent].initial == Some(id) { "initial " } else { "" };
-                self.line(depth, &format!("{initial}mode {}", mode.path));
+                let word = if mode.is_region { "region" } else { "mode" };
+                self.line(depth, &format!("{initial}{word} {}", mode.path));
                 depth + 1
             }
         };

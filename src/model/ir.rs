@@ -3,12 +3,13 @@
 //! Flat data. Expressions lie in one arena, operands before their users. What follows a `param` or a top-level `let`
 //! without agents in it is already a number. Values are SI. Modes form a tree whose root (number 0) is the agent itself.
 
-use crate::base::{Arena, Idx, Span};
+use crate::base::{Arena, FileId, Idx, Span};
 use crate::math::draw::Distribution;
 use crate::math::{Op, Scale};
 pub use crate::model::applied::Operands;
+pub use crate::model::collective::{Aggregate, Quantifier};
 pub use crate::model::integrator::Integrator;
-pub use crate::model::kinds::{Aggregate, Inside, ParamValue, Quantifier};
+pub use crate::model::kinds::{Inside, ParamValue};
 use crate::model::limits::Limits;
 
 /// Names an [`Expr`].
@@ -45,6 +46,8 @@ pub struct Model {
     pub run: Run,
     /// What it may ask for.
     pub limits: Limits,
+    /// The files of the text in the order of what they declare: imported ones before those that import them.
+    pub files: Vec<FileId>,
 }
 
 /// A top-level `param`.
@@ -352,8 +355,10 @@ pub struct Mode {
     pub depth: usize,
     /// Its submodes in order; empty for a leaf.
     pub children: Vec<ModeId>,
-    /// The child entered by default; none for a leaf.
+    /// The child entered by default; none for a leaf, and where the children are regions.
     pub initial: Option<ModeId>,
+    /// Whether it is a region: active as long as the agent is, beside the other regions.
+    pub is_region: bool,
     /// State number, its rate, where the equation stands; without those of enclosing modes.
     pub flow: Vec<(usize, ExprId, Span)>,
     /// Domain of the flow.
@@ -537,7 +542,7 @@ pub struct Block {
 pub struct Instance {
     /// Its type.
     pub ty: TypeId,
-    /// The leaf mode it starts in.
+    /// The mode it starts in: a leaf; of an agent with regions one of one region, or the root where the text names none.
     pub mode: ModeId,
     /// Values of the parameters, SI.
     pub params: Vec<f64>,

@@ -3,11 +3,8 @@
 //! Every block is planned first: where each of its values comes from, how many agents it has. Only then is anything
 //! made, so that a block may refer to one behind it, and a count beyond the limit costs no memory.
 
-use std::io::ErrorKind;
-
 use rustc_hash::FxHashMap;
 
-use super::Files;
 use super::context::{Context, Home, Member, Scope};
 use super::dimension::Dimension;
 use super::error::{FileError, LimitError, SystemError, TypeError, ValueError};
@@ -27,15 +24,14 @@ struct Data {
 }
 
 /// Makes the population.
-pub(super) fn populate<'a>(context: &mut Context<'a>, file: &'a ast::Ast, files: &mut dyn Files) {
-    let mut opened = FxHashMap::default();
-    let instances = file.items.iter().filter_map(|item| match item {
+pub(super) fn populate<'a>(context: &mut Context<'a>, items: &[&'a Item]) {
+    let instances = items.iter().filter_map(|item| match item {
         Item::System(system) => Some(&system.instances),
         _ => None,
     });
     let mut plans = Vec::new();
     for item in instances.flatten() {
-        plans.extend(context.plan(item, files, &mut opened));
+        plans.extend(context.plan(item));
     }
     for plan in &mut plans {
         context.plan_links(plan);
@@ -88,12 +84,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    fn plan(
-        &mut self,
-        item: &'a ast::Instance,
-        files: &mut dyn Files,
-        opened: &mut FxHashMap<String, FileId>,
-    ) -> Option<Plan<'a>> {
+    fn plan(&mut self, item: &'a ast::Instance) -> Option<Plan<'a>> {
         let constructor = &item.constructor;
         let ty = self.agent_named(&constructor.agent)?;
         let mode = self.start_mode(ty, constructor.start.as_ref());
@@ -111,7 +102,7 @@ impl<'a> Context<'a> {
             misspelt: Vec::new(),
         };
         let given = self.plan_arguments(&mut plan);
-        let data = constructor.source.as_ref().map(|source| self.open(source, files, opened));
+        let data = constructor.source.as_ref().map(|source| self.open(source));
         let mut wanted = Vec::new();
         if let Some(Some(data)) = &data {
             wanted = self.plan_columns(&mut plan, data, &given);
@@ -220,12 +211,7 @@ impl<'a> Context<'a> {
     }
 
     /// The file behind `from csv(...)`; none, and a diagnostic, if it cannot be used.
-    fn open(
-        &mut self,
-        source: &'a ast::Expr,
-        files: &mut dyn Files,
-        opened: &mut FxHashMap<String, FileId>,
-    ) -> Option<Data> {
+    fn open(&mut self, source: &'a ast::Expr) -> Option<Data> {
         let path = match &source.kind {
             ast::ExprKind::Call { callee, args } => match (&callee.kind, args.as_slice()) {
                 (ast::ExprKind::Name(name), [path]) if name == "csv" => Some(path),
@@ -240,35 +226,7 @@ impl<'a> Context<'a> {
             self.report(TypeError::Mismatch { what, expected, found, span: source.span, help: None });
             return None;
         };
-        let Some(name) = self.text_of(path) else {
-            let errors = self.diagnostics.len();
-            let value = self.lower(&mut Scope::of(Home::File), path);
-            if self.diagnostics.len() == errors && value.ty != Ty::Text {
-                let found = self.describe(value.ty);
-                let (what, expected) = ("the name of a file".to_string(), "a text".to_string());
-                self.report(TypeError::Mismatch { what, expected, found, span: path.span, help: None });
-            }
-            return None;
-        };
-        let file = match opened.get(&name) {
-            Some(&file) => file,
-            None => match files.read(&name) {
-                Ok(bytes) => match table::add_text(self.sources, &name, bytes) {
-                    Ok(file) => {
-                        opened.insert(name, file);
-                        file
-                    }
-                    Err(error) => {
-                        self.report(error);
-                        return None;
-                    }
-                },
-                Err(error) => {
-                    self.report(FileError::Unreadable { path: name, why: reason(&error), span: path.span });
-                    return None;
-                }
-            },
-        };
+        let file = self.open_file(path)?;
         match table::read_header(file, &self.sources.file(file).text) {
             Ok(header) => Some(Data { file, header, used: source.span }),
             Err(error) => {
@@ -433,13 +391,5 @@ impl<'a> Context<'a> {
                 count
             }
         }
-    }
-}
-
-/// Why a file cannot be read, in the same words everywhere.
-fn reason(error: &std::io::Error) -> String {
-    match error.kind() {
-        ErrorKind::NotFound => "there is no such file".to_string(),
-        _ => error.to_string(),
     }
 }

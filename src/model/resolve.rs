@@ -330,6 +330,14 @@ impl<'a> Context<'a> {
         target: &ast::Target,
     ) -> Option<Destination> {
         let mode = self.resolve_mode(ty, from, target)?;
+        let model = &self.model.types[ty];
+        if let (Some(own), Some(other)) = (model.region_of(from), model.region_of(mode))
+            && own != other
+        {
+            let [from, to] = [own, other].map(|region| model.modes[region].name.clone());
+            self.report(ModeError::AcrossRegions { from, to, span: target.span });
+            return None;
+        }
         let Some(span) = target.history else { return Some(Destination { mode, inside: Inside::Initial }) };
         let item = &self.model.types[ty].modes[mode];
         if item.children.is_empty() {

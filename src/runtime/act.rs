@@ -15,7 +15,7 @@ use crate::runtime::guards::Origin;
 use crate::runtime::lives::{Conceived, Doomed};
 use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::Depth;
-use crate::runtime::route::{Move, remember, route};
+use crate::runtime::route::{Move, reached, remember, route};
 use crate::runtime::truth;
 
 /// A value for a column of an agent.
@@ -25,7 +25,7 @@ pub struct Write {
     pub agent: usize,
     /// Which column.
     pub target: Target,
-    /// Its value; the number of a leaf for a mode.
+    /// Its value.
     pub value: f64,
     /// The assignment.
     pub span: Span,
@@ -194,7 +194,6 @@ impl Engine<'_, '_> {
         let variable = match write.target {
             Target::State(k) => system.states[k].name.clone(),
             Target::Aux(column) => system.discretes[column - system.layout.discrete(0)].name.clone(),
-            Target::Mode => "mode".into(),
         };
         Reason::ActionNotFinite {
             place: self.place(write.agent),
@@ -238,14 +237,24 @@ impl Engine<'_, '_> {
         entries: &[(usize, &[usize])],
         written: &mut Written,
     ) -> Result<(), Failure> {
-        let depth = entries.iter().map(|(_, entered)| entered.len()).max().unwrap_or(0);
-        for level in 0..depth {
+        let types = &self.program.types;
+        let depths = |&(agent, entered): &(usize, &[usize])| {
+            let modes = &types[self.agents.agents[agent].ty].modes;
+            let depth = |mode: Option<&usize>| mode.map_or(0, |&mode| modes[mode].depth);
+            depth(entered.first())..depth(entered.last()) + 1
+        };
+        let levels: Vec<std::ops::Range<usize>> = entries.iter().map(depths).collect();
+        let n_levels = levels.iter().map(|depths| depths.len()).max().unwrap_or(0);
+        for level in 0..n_levels {
             let mut effect = Effect::default();
-            for &(agent, entered) in entries {
-                let Some(&mode) = entered.get(level) else { continue };
-                let node = &self.program.types[self.agents.agents[agent].ty].modes[mode];
-                let slots = self.agents.slots(&node.entry.frame, &[agent]);
-                self.run_list(&node.entry, &slots, &[agent], &node.path, &mut effect)?;
+            for (&(agent, entered), depths) in entries.iter().zip(&levels) {
+                let modes = &types[self.agents.agents[agent].ty].modes;
+                for node in
+                    entered.iter().map(|&mode| &modes[mode]).filter(|node| node.depth == depths.start + level)
+                {
+                    let slots = self.agents.slots(&node.entry.frame, &[agent]);
+                    self.run_list(&node.entry, &slots, &[agent], &node.path, &mut effect)?;
+                }
             }
             for write in &effect.writes {
                 self.write(write, written);
@@ -268,7 +277,6 @@ impl Engine<'_, '_> {
                 self.restart_readers(write.agent, column, written);
                 self.agents.agents[write.agent].aux[column] = write.value;
             }
-            Target::Mode => {}
         }
     }
 
@@ -278,8 +286,8 @@ impl Engine<'_, '_> {
         self.restart_readers(change.agent, Layout::MODE, written);
         let time = self.present.time;
         let agent = &mut self.agents.agents[change.agent];
-        agent.mode = change.to;
-        agent.aux[Layout::MODE] = change.to as f64;
+        agent.mode = reached(&self.program.types[agent.ty], agent.mode, &change.left, &change.entered);
+        agent.aux[Layout::MODE] = agent.mode as f64;
         agent.aux[Layout::ENTRY] = time;
         remember(&self.program.types[agent.ty], &change.entered, &mut agent.aux);
     }
@@ -385,34 +393,72 @@ impl Engine<'_, '_> {
     }
 }
 
-/// The columns that a firing may write: exit, transition and entry actions together, both branches of an `if`; its mode
-/// stands for the region (rule 4).
-pub fn claims(engine: &Engine<'_, '_>, instance: u32, slots: &Slots) -> Vec<(usize, Target)> {
+/// What a firing takes for itself in a micro-step (rule 4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Claimed {
+    /// A column of an agent, which it may write.
+    Column(Target),
+    /// A region of an agent, by its number among those of its type.
+    Region(usize),
+}
+
+/// What a firing takes: the columns that exit, transition and entry actions together may write, both branches of an `if`; the
+/// region of its mode; all regions of an agent if it is of the agent itself, or an interaction that changes the agent's mode.
+pub fn claims(engine: &Engine<'_, '_>, instance: u32, slots: &Slots) -> Vec<(usize, Claimed)> {
     let mut claims = Vec::new();
     let (transition, pair): (&TransitionSystem, bool) = match engine.guards.definition(instance).origin {
         Origin::Transition(transition) => (transition, false),
         Origin::Pair(pair) => (&pair.transition, true),
         Origin::Claim(_) | Origin::Link(_) => return claims,
     };
-    claims.extend(transition.actions.writes.iter().map(|&(slot, target)| (slots[slot], target)));
+    let system = |agent: usize| &engine.program.types[engine.agents.agents[agent].ty];
+    let mut regions = |agent: usize, source: usize| {
+        let (ty, own) = (system(agent), system(agent).region_of(source));
+        let taken = (0..ty.regions.len()).filter(|&k| own.is_none_or(|own| own == ty.regions[k]));
+        claims.extend(taken.map(|k| (agent, Claimed::Region(k))));
+    };
     let mut moves = Vec::new();
-    if !pair {
-        claims.push((slots[0], Target::Mode));
-        moves.extend(transition.target.map(|target| engine.route(slots[0], transition.source, target)));
-    } else {
+    if pair {
         gotos(&transition.actions.steps, &mut |slot, target| {
-            moves.push(engine.route(slots[slot], 0, target))
+            regions(slots[slot], 0);
+            moves.push(engine.route(slots[slot], 0, target));
         });
+    } else {
+        regions(slots[0], transition.source);
+        moves.extend(transition.target.map(|target| engine.route(slots[0], transition.source, target)));
     }
+    dooms(&transition.actions.steps, &mut |slot| {
+        if slots[slot] != ABSENT {
+            regions(slots[slot], 0);
+        }
+    });
+    let own = transition.actions.writes.iter();
+    claims.extend(own.map(|&(slot, target)| (slots[slot], Claimed::Column(target))));
     for change in moves {
-        claims.push((change.agent, Target::Mode));
-        let modes = &engine.program.types[engine.agents.agents[change.agent].ty].modes;
+        let modes = &system(change.agent).modes;
         let lists = change.left.iter().map(|&mode| &modes[mode].exit);
         for list in lists.chain(change.entered.iter().map(|&mode| &modes[mode].entry)) {
-            claims.extend(list.writes.iter().map(|&(_, target)| (change.agent, target)));
+            claims.extend(list.writes.iter().map(|&(_, target)| (change.agent, Claimed::Column(target))));
         }
     }
     claims
+}
+
+/// Calls `visit` with the slot of every agent that some actions remove.
+fn dooms(steps: &[ActionStep], visit: &mut dyn FnMut(usize)) {
+    for step in steps {
+        match step {
+            ActionStep::Destroy { slot, .. } => visit(*slot),
+            ActionStep::If { then, otherwise, .. } => {
+                dooms(then, visit);
+                dooms(otherwise, visit);
+            }
+            ActionStep::Assign { .. }
+            | ActionStep::Goto { .. }
+            | ActionStep::Stop { .. }
+            | ActionStep::Create(_) => {}
+        }
+    }
 }
 
 /// Calls `visit` with every change of mode in some actions.

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use rustc_hash::FxHashMap;
 
 use crate::base::Span;
-use crate::codegen::program::{ClaimKind, ClaimSystem, Target, Trigger};
-use crate::runtime::act::{Effect, Written, claims};
+use crate::codegen::program::{ClaimKind, ClaimSystem, Trigger};
+use crate::runtime::act::{Claimed, Effect, Written, claims};
 use crate::runtime::arm::Rule;
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason, contested};
@@ -111,7 +111,7 @@ impl Engine<'_, '_> {
             let by_number = a.slots.iter().map(number).cmp(b.slots.iter().map(number));
             by_priority.then(by_place).then(by_number).then(a.candidate.cmp(&b.candidate))
         });
-        let mut taken: FxHashMap<(usize, Target), u32> = FxHashMap::default();
+        let mut taken: FxHashMap<(usize, Claimed), u32> = FxHashMap::default();
         let (mut chosen, mut passed) = (Vec::new(), Vec::new());
         for ranked in ranked {
             let claims = claims(self, ranked.candidate.instance, &ranked.slots);

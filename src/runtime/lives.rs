@@ -19,7 +19,7 @@ use crate::runtime::failure::Failure;
 use crate::runtime::fate::Fate;
 use crate::runtime::guards::Origin;
 use crate::runtime::population::{ABSENT, Agent, Slots};
-use crate::runtime::route::begin_histories;
+use crate::runtime::route::{begin_histories, first};
 use crate::runtime::solve::segment::Segment;
 use crate::runtime::truth;
 
@@ -177,7 +177,8 @@ impl Engine<'_, '_> {
         let Row { states, aux } = self.row(conceived)?;
         self.make_seat(ty)?;
         let segment = Segment::at(self.present.time, &states);
-        let (number, seat, word, created, mode, group) = (0, 0, Some(*word), 0, birth.mode, 0);
+        let (number, seat, word, created, mode, group) =
+            (0, 0, Some(*word), 0, first(&self.program.types[ty], birth.mode), 0);
         let n_states = states.len();
         let place =
             self.agents.admit(Agent { number, ty, seat, word, created, mode, group, states, aux, segment });
@@ -201,10 +202,10 @@ impl Engine<'_, '_> {
         let system = &program.types[birth.ty];
         let layout = &system.layout;
         let mut row = Row { states: vec![0.0; layout.n_states], aux: vec![0.0; layout.n_aux()] };
-        row.aux[Layout::MODE] = birth.mode as f64;
+        row.aux[Layout::MODE] = first(system, birth.mode) as f64;
         row.aux[Layout::ENTRY] = self.present.time;
         (0..layout.n_links).for_each(|link| row.aux[layout.link(link)] = -1.0);
-        begin_histories(system, birth.mode, &mut row.aux);
+        begin_histories(system, first(system, birth.mode), &mut row.aux);
         given.iter().for_each(|&(variable, value)| row.set(layout, variable, value));
         let Initials { values, .. } = &system.initials;
         for (variable, source) in values {

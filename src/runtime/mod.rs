@@ -13,7 +13,7 @@
 //! | 1 state | states flow, discretes stay, lets follow, links refer | `population` |
 //! | 2 arming | a guard fires at the first instant it is armed and true; firing disarms, being false arms | `arm`, `truth` |
 //! | 3 the instant | the infimum of the times at which the condition is true; on its boundary the rates decide | `solve::roots`, `branches`, `arm` |
-//! | 4 micro-steps | one instant is a sequence of micro-steps, each on the state before it | `instant`, `gather` |
+//! | 4 micro-steps | one instant is a sequence of micro-steps, each on the state before it | `instant`, `gather`, `route` |
 //! | 5 who may write | agents write themselves, interactions their participants | `act`, `guards` |
 //! | 6 t = 0 | locks, groups, entry actions, arming, micro-steps, claims | `masim` |
 //! | 7 after a reset | only what a write concerns restarts | `act` |

@@ -12,7 +12,7 @@ use smallvec::SmallVec;
 use crate::codegen::program::{Flow, Frame, Layout, ModeSystem, Program, Slot};
 use crate::runtime::cold::Cold;
 use crate::runtime::observe::Who;
-use crate::runtime::route::begin_histories;
+use crate::runtime::route::{begin_histories, first};
 use crate::runtime::solve::segment::Segment;
 
 /// How many seats a type gets that has had none.
@@ -40,7 +40,7 @@ pub struct Agent {
     pub word: Option<u64>,
     /// How many agents it has created.
     pub created: u64,
-    /// The leaf mode it is in.
+    /// The configuration it is in: a leaf mode, or one of each region.
     pub mode: usize,
     /// Its group.
     pub group: usize,
@@ -92,7 +92,7 @@ impl<'p> Agents<'p> {
         for (number, instance) in program.population.agents.iter().enumerate() {
             let ty = instance.ty.index();
             let system = &program.types[ty];
-            let mode = instance.mode.index();
+            let mode = first(system, instance.mode.index());
             let mut aux = vec![0.0; system.layout.n_aux()];
             aux[Layout::NUMBER] = number as f64;
             aux[Layout::MODE] = mode as f64;
@@ -290,7 +290,7 @@ impl<'p> Agents<'p> {
 
     /// The equations an agent follows.
     pub fn flow(&self, agent: usize) -> &'p Flow {
-        self.mode(agent).flow.as_ref().expect("an agent is in a leaf mode, and leaves have flows")
+        self.mode(agent).flow.as_ref().expect("an agent is in a configuration, and these have flows")
     }
 
     /// The auxiliary columns, by slot, that the active flow of an agent depends on.

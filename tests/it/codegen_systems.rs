@@ -139,6 +139,7 @@ pub fn with_flow(graph: Graph, rates: Vec<NodeId>) -> System {
         parent: None,
         depth: 0,
         initial: None,
+        offset: 0,
         history: None,
         active: vec![0],
         flow: Some(flow),
@@ -159,6 +160,7 @@ pub fn with_flow(graph: Graph, rates: Vec<NodeId>) -> System {
         declared: Vec::new(),
         initials: Default::default(),
         modes: vec![mode],
+        regions: vec![0],
         transitions: Vec::new(),
     };
     let mut system = bare(graph, functions);

@@ -23,6 +23,7 @@ use hyc::runtime::paper::Form;
 pub struct Case {
     name: String,
     text: String,
+    files: Vec<(String, String)>,
     settings: Settings,
     limits: Limits,
     algorithm: Algorithm,
@@ -128,17 +129,7 @@ pub fn simulate_error(text: &str) -> (Run, Diagnostic) {
 /// What is wrong with a model that must be wrong: the messages in full.
 #[track_caller]
 pub fn refused(text: &str) -> String {
-    let case = Case::new(text);
-    let mut sources = SourceMap::default();
-    let diagnostics = match case.model(&mut sources) {
-        Err(diagnostics) => diagnostics,
-        Ok(model) => match hyc::calculus::derive(&model) {
-            Err(diagnostics) => diagnostics,
-            Ok(_) => panic!("the model should be refused:\n{text}"),
-        },
-    };
-    assert!(diagnostics.iter().any(Diagnostic::is_error), "refused without an error: {diagnostics:#?}");
-    words(&diagnostics)
+    words(&Case::new(text).refused().1)
 }
 
 /// The text of diagnostics without places.
@@ -192,6 +183,12 @@ impl Case {
         let path = format!("{}/models/{name}", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
         Self { name: path, text, ..Self::default() }
+    }
+
+    /// A file that the model names.
+    pub fn file(mut self, name: &str, text: &str) -> Self {
+        self.files.push((name.into(), text.into()));
+        self
     }
 
     /// `-p name=value`
@@ -248,8 +245,28 @@ impl Case {
     /// The checked model.
     pub fn model(&self, sources: &mut SourceMap) -> Result<Model, Vec<Diagnostic>> {
         let ast = self.ast(sources)?;
-        let checked = hyc::model::check(&ast, sources, &mut Data, &self.settings);
+        let checked = self.check(&ast, sources);
         checked.model.ok_or(checked.diagnostics)
+    }
+
+    /// What a check of its tree comes to.
+    pub fn check(&self, ast: &hyc::syntax::Ast, sources: &mut SourceMap) -> hyc::model::Checked {
+        hyc::model::check(ast, sources, &mut Data(&self.files), &self.settings)
+    }
+
+    /// What is wrong with a model that must be wrong.
+    #[track_caller]
+    pub fn refused(&self) -> (SourceMap, Vec<Diagnostic>) {
+        let mut sources = SourceMap::default();
+        let diagnostics = match self.model(&mut sources) {
+            Err(diagnostics) => diagnostics,
+            Ok(model) => match hyc::calculus::derive(&model) {
+                Err(diagnostics) => diagnostics,
+                Ok(_) => panic!("the model should be refused:\n{}", self.text),
+            },
+        };
+        assert!(diagnostics.iter().any(Diagnostic::is_error), "refused without an error: {diagnostics:#?}");
+        (sources, diagnostics)
     }
 
     /// Its equations.
@@ -331,11 +348,14 @@ impl Case {
     }
 }
 
-/// The data files of the folder `models`.
-struct Data;
+/// The files of a case, and the data files of the folder `models`.
+struct Data<'a>(&'a [(String, String)]);
 
-impl Files for Data {
+impl Files for Data<'_> {
     fn read(&mut self, path: &str) -> io::Result<Vec<u8>> {
+        if let Some((_, text)) = self.0.iter().find(|(name, _)| name == path) {
+            return Ok(text.clone().into_bytes());
+        }
         std::fs::read(format!("{}/models/{path}", env!("CARGO_MANIFEST_DIR")))
     }
 }

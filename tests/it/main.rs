@@ -43,4 +43,7 @@ mod robust;
 mod windows;
 mod aggregates;
 mod lives;
+mod imports;
+mod tables;
+mod hierarchies;
 mod limits;

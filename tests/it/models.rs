@@ -18,6 +18,7 @@ mod double_crossing;
 mod multirate;
 mod interlock;
 mod convoy;
+mod metro;
 
 use crate::harness::{Case, Ended, near};
 

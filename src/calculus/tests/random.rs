@@ -57,6 +57,7 @@ pub fn model() -> Model {
         depth: 0,
         children: Vec::new(),
         initial: None,
+        is_region: false,
         flow: Vec::new(),
         invariants: Vec::new(),
         asserts: Vec::new(),

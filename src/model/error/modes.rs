@@ -14,6 +14,10 @@ pub(in crate::model) enum ModeError {
     NoInitial { owner: String, span: Span, example: String },
     /// Two initial modes.
     TwoInitial { owner: String, span: Span, first: Span },
+    /// A mode beside regions.
+    BesideRegion { name: String, span: Span, first: Span },
+    /// A transition from one region into another.
+    AcrossRegions { from: String, to: String, span: Span },
     /// The history of a mode without submodes.
     NoHistory { path: String, declared: Span, span: Span },
     /// A flow reads an agent that may not be there.
@@ -68,6 +72,19 @@ impl From<ModeError> for Diagnostic {
                     .label(first, "the first one")
                     .help("leave out one `initial`")
             }
+            ModeError::BesideRegion { name, span, first } => Diagnostic::error(
+                "HY0249",
+                format!("mode `{name}` stands beside a region"),
+            )
+            .label(span, "in no region")
+            .label(first, "a region: its modes are active beside those of other regions")
+            .help("put it and the modes beside it into a region of their own"),
+            ModeError::AcrossRegions { from, to, span } => Diagnostic::error(
+                "HY0255",
+                format!("a transition of region `{from}` leads into region `{to}`"),
+            )
+            .label(span, format!("in region `{to}`"))
+            .help("a region changes its own mode only: let the other one wait for it (`when self is ...`), or write the transition outside of the regions, which leaves them all"),
             ModeError::NoHistory { path, declared, span } => {
                 Diagnostic::error("HY0248", format!("`{path}` has no modes inside, and so no history"))
                     .label(span, "which submode was active last?")
@@ -157,12 +174,12 @@ impl From<ActionError> for Diagnostic {
                     .help("split it into several")
             }
             ActionError::CreatesMany { span, what } => {
-                Diagnostic::error("HY0255", "an action creates one agent at a time")
+                Diagnostic::error("HY0256", "an action creates one agent at a time")
                     .label(span, format!("{what} here"))
                     .help("write one `create` for each, or let a transition fire as often as it is needed")
             }
             ActionError::DestroysNoAgent { span, found } => {
-                Diagnostic::error("HY0256", "only an agent can be destroyed")
+                Diagnostic::error("HY0257", "only an agent can be destroyed")
                     .label(span, format!("this is {found}"))
                     .help("write `destroy self`, or the name of a link or of an agent that is bound here")
             }

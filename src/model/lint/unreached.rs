@@ -74,6 +74,7 @@ fn reached(ty: &AgentType, starts: &[ModeId]) -> Vec<bool> {
         }
         pending.extend(ty.modes[mode].parent);
         pending.extend(ty.modes[mode].initial);
+        pending.extend(ty.modes[mode].children.iter().filter(|&&child| ty.modes[child].is_region));
         pending.extend(&from[mode.index()]);
     }
     reached

@@ -8,6 +8,7 @@ mod rule_02_arming;
 mod rule_03_instant;
 mod rule_04_micro_steps;
 mod rule_04_hierarchy;
+mod rule_04_regions;
 mod rule_05_writing;
 mod rule_06_start;
 mod rule_07_reset;

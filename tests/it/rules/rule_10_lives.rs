@@ -405,8 +405,8 @@ fn rule_10_arguments_are_checked() {
     assert!(told("create Car(v = 1, boss = none)").contains("HY0220"));
     assert!(told("create Car(v = 1, boss = self, z = 3)").contains("HY0267"));
     assert!(told("create Car(v = 1, v = 2, boss = self)").contains("HY0268"));
-    assert!(told("create Car[3](v = 1, boss = self)").contains("HY0255"));
+    assert!(told("create Car[3](v = 1, boss = self)").contains("HY0256"));
     assert!(told("create Cat()").contains("HY0202"));
-    assert!(told("destroy y").contains("HY0256"));
-    assert!(told("destroy none").contains("HY0256"));
+    assert!(told("destroy y").contains("HY0257"));
+    assert!(told("destroy none").contains("HY0257"));
 }
