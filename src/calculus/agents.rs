@@ -109,7 +109,7 @@ fn destinations(list: &[Action], visit: &mut dyn FnMut(usize, Destination)) {
                 destinations(then, visit);
                 destinations(otherwise, visit);
             }
-            Action::Assign { .. } | Action::Stop { .. } => {}
+            Action::Assign { .. } | Action::Stop { .. } | Action::Create(_) | Action::Destroy { .. } => {}
         }
     }
 }

@@ -312,7 +312,7 @@ fn present(draft: &mut Draft, scope: &Scope, agent: AgentRef) -> NodeId {
 }
 
 /// The number of an agent, -1 for none.
-fn agent_number(draft: &mut Draft, scope: &Scope, agent: AgentRef) -> NodeId {
+pub fn agent_number(draft: &mut Draft, scope: &Scope, agent: AgentRef) -> NodeId {
     match agent {
         AgentRef::Absent => draft.graph.number(-1.0),
         AgentRef::Slot(slot) => match scope.frame.slots[slot] {

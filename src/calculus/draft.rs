@@ -9,8 +9,10 @@ use rustc_hash::FxBuildHasher;
 use crate::base::{Arena, Diagnostic, Span};
 use crate::calculus::error::Error;
 use crate::calculus::graph::{Graph, NodeId};
-use crate::calculus::system::{AgentSystem, Column, Function, FunctionId, InteractionSystem, Layout, System};
-use crate::model::ir::{AgentType, Model, Type, Variable};
+use crate::calculus::system::{
+    AgentSystem, Column, Function, FunctionId, Initials, InteractionSystem, Layout, LinkSystem, System,
+};
+use crate::model::ir::{AgentType, Link, Model, Type, Variable};
 
 /// See the head of this file.
 pub struct Draft<'m> {
@@ -100,6 +102,10 @@ impl<'m> Draft<'m> {
     }
 }
 
+fn link(link: &Link) -> LinkSystem {
+    LinkSystem { name: link.name.clone(), required: link.required, updates: Vec::new() }
+}
+
 fn columns(ty: &AgentType) -> AgentSystem {
     let column = |v: &Variable| Column { name: v.name.clone(), scale: v.scale, boolean: v.ty == Type::Bool };
     AgentSystem {
@@ -115,9 +121,10 @@ fn columns(ty: &AgentType) -> AgentSystem {
         states: ty.states.iter().map(column).collect(),
         params: ty.params.iter().map(column).collect(),
         discretes: ty.discretes.iter().map(column).collect(),
-        links: ty.links.iter().map(|link| link.name.clone()).collect(),
+        links: ty.links.iter().map(link).collect(),
         lets: Vec::new(),
         declared: ty.declared.clone(),
+        initials: Initials::default(),
         modes: Vec::new(),
         regions: Vec::new(),
         transitions: Vec::new(),

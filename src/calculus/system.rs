@@ -13,10 +13,11 @@ use std::sync::Arc;
 
 use crate::base::{Arena, Idx, Span};
 use crate::calculus::graph::{Graph, NodeId};
-pub use crate::calculus::layout::Layout;
+pub use crate::calculus::layout::{Column, Layout, Target};
 pub use crate::calculus::range::{Near, Range};
 pub use crate::calculus::relation::Relation;
-use crate::math::Scale;
+pub use crate::calculus::slot::Slot;
+use crate::math::draw::Distribution;
 pub use crate::model::ir::{
     Aggregate, Block, Destination, Inside, Instance, Integrator, Population, Record, Run, VarRef,
 };
@@ -104,54 +105,6 @@ pub struct Term {
     pub smooth: bool,
 }
 
-/// How the agent in a slot is found.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Slot {
-    /// `self`, a participant, or an agent bound by a quantifier.
-    Root {
-        /// Its type.
-        ty: usize,
-        /// For listings: `self`, `a`, `o`.
-        name: String,
-    },
-    /// The agent that link number `link` of the agent in slot `from` leads to; it may be absent.
-    Link {
-        /// Where the link starts.
-        from: usize,
-        /// The number of the link in its type.
-        link: usize,
-        /// The type of the agent it leads to.
-        ty: usize,
-        /// For listings: `lead`, `o.lead`.
-        name: String,
-    },
-    /// The value of an aggregate.
-    Fold {
-        /// Its number in [`Frame::folds`].
-        number: usize,
-        /// The type over which it goes.
-        ty: usize,
-        /// For listings: `sum[o in Car]`.
-        name: String,
-    },
-}
-
-impl Slot {
-    /// The agent type; of an aggregate that over which it goes.
-    pub fn ty(&self) -> usize {
-        match self {
-            Slot::Root { ty, .. } | Slot::Link { ty, .. } | Slot::Fold { ty, .. } => *ty,
-        }
-    }
-
-    /// The name for listings.
-    pub fn name(&self) -> &str {
-        match self {
-            Slot::Root { name, .. } | Slot::Link { name, .. } | Slot::Fold { name, .. } => name,
-        }
-    }
-}
-
 /// An agent type.
 #[derive(Clone, Debug)]
 pub struct AgentSystem {
@@ -165,12 +118,14 @@ pub struct AgentSystem {
     pub params: Vec<Column>,
     /// Names of the discrete variables.
     pub discretes: Vec<Column>,
-    /// Names of the links.
-    pub links: Vec<String>,
+    /// The links.
+    pub links: Vec<LinkSystem>,
     /// Algebraic definitions, for recording.
     pub lets: Vec<LetSystem>,
     /// Recordable names in order of declaration.
     pub declared: Vec<(String, VarRef)>,
+    /// What its agents start with; empty if none of them are created during a run.
+    pub initials: Initials,
     /// The tree of modes, numbered as in the model; 0 is the root. Behind it, for an agent with regions, its configurations: the
     /// combinations of a leaf of each region. In an agent without regions the leaves are the configurations.
     pub modes: Vec<ModeSystem>,
@@ -180,32 +135,52 @@ pub struct AgentSystem {
     pub transitions: Vec<TransitionSystem>,
 }
 
-impl AgentSystem {
-    /// A mode and those around it, inner first.
-    pub fn around(&self, mode: usize) -> impl Iterator<Item = usize> + '_ {
-        std::iter::successors(Some(mode), |&mode| self.modes[mode].parent)
-    }
-
-    /// The region that a mode is in; none for the root of an agent with regions.
-    pub fn region_of(&self, mode: usize) -> Option<usize> {
-        self.around(mode).find(|around| self.regions.contains(around))
-    }
-
-    /// Whether a mode is another one, or inside it.
-    pub fn is_inside(&self, mode: usize, other: usize) -> bool {
-        self.around(mode).any(|around| around == other)
-    }
-}
-
-/// A named column with its unit for output.
+/// A link of an agent type.
 #[derive(Clone, Debug)]
-pub struct Column {
+pub struct LinkSystem {
     /// Its name.
     pub name: String,
-    /// What one declared unit is in SI.
-    pub scale: Scale,
-    /// Whether it holds a boolean.
-    pub boolean: bool,
+    /// A parameter of agent type: never none.
+    pub required: bool,
+    /// If it follows from an expression: its cases, of which the first that holds says whom it leads to.
+    pub updates: Vec<LinkUpdate>,
+}
+
+/// One case of a link that follows from an expression.
+#[derive(Clone, Debug)]
+pub struct LinkUpdate {
+    /// The number of the link in its type.
+    pub link: usize,
+    /// As messages call it: `Car.lead`.
+    pub label: String,
+    /// The agents that all of it reads.
+    pub frame: Frame,
+    /// When the case holds.
+    pub case: Guard,
+    /// When it holds and the link does not lead where it says: `And` of the case and of that, which is a tree of its own.
+    pub stale: Guard,
+    /// Whom the link is to lead to.
+    pub target: Whither,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// Whom a link is to lead to.
+#[derive(Clone, Debug)]
+pub enum Whither {
+    /// To nobody.
+    Nobody,
+    /// To the agent in a slot.
+    Slot(usize),
+    /// To whoever has the least key. The link strays if `Or(Exists(And(filter, Or(nobody, nearer))), And(somebody, lost))`.
+    Nearest {
+        /// Among whom.
+        range: Range,
+        /// Who belongs to it.
+        filter: Guard,
+        /// One output.
+        key: FunctionId,
+    },
 }
 
 /// A `let`, computed when it is recorded.
@@ -511,15 +486,6 @@ pub struct ActionList {
     pub writes: Vec<(usize, Target)>,
 }
 
-/// A column that actions write.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Target {
-    /// A state.
-    State(usize),
-    /// A discrete variable, by its auxiliary column (absolute index).
-    Aux(usize),
-}
-
 /// A step of a list of actions.
 #[derive(Clone, Debug)]
 pub enum ActionStep {
@@ -559,6 +525,56 @@ pub enum ActionStep {
         /// Where it stands.
         span: Span,
     },
+    /// Makes an agent, at the end of the micro-step.
+    Create(Arc<Birth>),
+    /// Removes the agent in the slot, if there is one, at the end of the micro-step.
+    Destroy {
+        /// Who.
+        slot: usize,
+        /// Where it stands.
+        span: Span,
+    },
+}
+
+/// What the agents of a type start with, where they are not given anything else: what is declared, in an order in which each
+/// finds what it reads; parameters first.
+#[derive(Clone, Debug, Default)]
+pub struct Initials {
+    /// Reads the agent that is made, as far as it is.
+    pub frame: Frame,
+    /// What each variable starts with.
+    pub values: Vec<(VarRef, Source)>,
+}
+
+/// Where the value of a variable comes from when its agent is made.
+#[derive(Clone, Debug)]
+pub enum Source {
+    /// One output.
+    Number(FunctionId),
+    /// A random number.
+    Draw {
+        /// How it is distributed.
+        distribution: Distribution,
+        /// One output each.
+        parameters: Vec<FunctionId>,
+        /// Where it stands.
+        span: Span,
+    },
+}
+
+/// How an agent is made by an action.
+#[derive(Clone, Debug)]
+pub struct Birth {
+    /// Its type.
+    pub ty: usize,
+    /// The leaf mode it starts in.
+    pub mode: usize,
+    /// What it is given, by functions of the list's frame.
+    pub given: Vec<(VarRef, Source)>,
+    /// The links that it is given: number of the link, slot of the agent that it leads to; none: to nobody.
+    pub links: Vec<(usize, Option<usize>)>,
+    /// Where it stands.
+    pub span: Span,
 }
 
 /// An interaction of two agents.

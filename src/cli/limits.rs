@@ -21,7 +21,7 @@ impl Limits {
             let small = u32::try_from(*value).unwrap_or(u32::MAX);
             let size = usize::try_from(*value).unwrap_or(usize::MAX);
             match name.as_str() {
-                "max_agents" => model.agents_max = size,
+                "max_agents" => (model.agents_max, run.agents_max) = (size, size),
                 "max_values" => model.values_max = size,
                 "max_states" => model.states_max = size,
                 "max_modes" => model.modes_max = size,

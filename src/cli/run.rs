@@ -297,6 +297,7 @@ pub(super) fn cast_of(program: &Program) -> Cast {
         }
     }
     let types = program.types.iter().map(|ty| TypeColumns {
+        name: ty.name.clone(),
         states: ty.states.iter().map(|column| column.name.clone()).collect(),
         discretes: ty.discretes.iter().map(|column| column.name.clone()).collect(),
         discrete_kinds: ty.discretes.iter().map(kind_of).collect(),

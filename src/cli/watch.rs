@@ -33,6 +33,7 @@ pub(super) fn watch(model: &Model, program: &Program) -> Result<(Record, Watched
     let shown: Vec<Shown> = found.into_iter().map(|column| column.shown).collect();
     let record = Record {
         agents: (0..n_agents).collect(),
+        born: vec![true; model.types.len()],
         columns: shown.iter().map(|column| column.name.clone()).collect(),
         variables,
         every: Some(if until > 0.0 { until / n_samples.floor() } else { 1.0 }),

@@ -46,14 +46,8 @@ impl<'a> Context<'a> {
         let span = item.span;
         match &item.kind {
             ActionKind::Assign { place, given } => self.assignment(scope, place, given, span, written),
-            ActionKind::Create(_) => {
-                self.refuse("`create` actions", span);
-                None
-            }
-            ActionKind::Destroy(_) => {
-                self.refuse("`destroy` actions", span);
-                None
-            }
+            ActionKind::Create(constructor) => self.create(scope, constructor),
+            ActionKind::Destroy(agent) => self.destroy(scope, agent, span),
             ActionKind::Emit { .. } => {
                 self.refuse("`emit` actions", span);
                 None

@@ -218,6 +218,8 @@ pub(super) struct Scope<'a> {
     pub locals: Vec<(&'a str, Slot)>,
     /// Names bound by quantifiers, the innermost last.
     pub bound: Vec<(&'a str, BinderId)>,
+    /// Names bound by a `nearest` of the guard, with its link.
+    pub nearest: Vec<(&'a str, Value)>,
 }
 
 /// Whose text an expression belongs to.
@@ -240,7 +242,7 @@ pub(super) enum Home {
 impl Scope<'_> {
     /// A scope without names of its own.
     pub fn of(home: Home) -> Self {
-        Scope { home, locals: Vec::new(), bound: Vec::new() }
+        Scope { home, locals: Vec::new(), bound: Vec::new(), nearest: Vec::new() }
     }
 }
 

@@ -6,7 +6,7 @@ use super::context::{
     AgentNames, Body, Context, Definition, Global, GlobalKind, Member, PairNames, Progress,
 };
 use super::error::{LimitError, NameError, TypeError};
-use super::ir::{AgentType, Interaction, Link, Mode, ModeId, Type, TypeId, Variable};
+use super::ir::{AgentType, Initials, Interaction, Link, Mode, ModeId, Type, TypeId, Variable};
 use super::types::{Quantity, Slot, Ty};
 use crate::base::{Arena, Span};
 use crate::syntax::ast::{self, AgentItem, BodyItem, Item, VariableKind};
@@ -104,6 +104,7 @@ impl<'a> Context<'a> {
             links: Vec::new(),
             lets: Vec::new(),
             declared: Vec::new(),
+            initials: Initials::default(),
             modes: Arena::from_iter([root]),
             transitions: Vec::new(),
         });
@@ -188,7 +189,8 @@ impl<'a> Context<'a> {
                 }
                 let links = &mut self.model.types[ty].links;
                 let span = formal.name.span;
-                links.push(Link { name: formal.name.text.clone(), ty: target, required: true, span });
+                let name = formal.name.text.clone();
+                links.push(Link { name, ty: target, required: true, cases: Vec::new(), span });
                 let number = links.len() - 1;
                 self.declare_member(ty, &formal.name, Member::Link(number));
             }
@@ -247,27 +249,24 @@ impl<'a> Context<'a> {
     }
 
     fn declare_link(&mut self, ty: TypeId, item: &'a ast::Link) {
-        if let Some(value) = &item.value {
-            self.refuse("links with an expression of their own", value.span);
-        }
-        let target = match &item.target {
+        let of_value = item.value.as_ref().and_then(|value| self.link_type(value));
+        let target = match item.target.as_ref().or(of_value) {
             Some(name) => self.agent_named(name),
             None => {
-                if item.value.is_none() {
-                    self.report(TypeError::NotAllowed {
-                        what: "a link",
-                        found: "without a type".to_string(),
-                        span: item.span,
-                        help: "say what it leads to: `link lead: Car`",
-                    });
-                }
+                self.report(TypeError::NotAllowed {
+                    what: "a link",
+                    found: "without a type".to_string(),
+                    span: item.span,
+                    help: "say what it leads to: `link lead: Car`",
+                });
                 None
             }
         };
         // Without a known type the link leads to agents of its own kind: some member must exist, and the model is refused anyway.
         let links = &mut self.model.types[ty].links;
         let span = item.name.span;
-        links.push(Link { name: item.name.text.clone(), ty: target.unwrap_or(ty), required: false, span });
+        let (name, cases) = (item.name.text.clone(), Vec::new());
+        links.push(Link { name, ty: target.unwrap_or(ty), required: false, cases, span });
         let number = links.len() - 1;
         self.declare_member(ty, &item.name, Member::Link(number));
     }

@@ -4,10 +4,12 @@
 //! without agents in it is already a number. Values are SI. Modes form a tree whose root (number 0) is the agent itself.
 
 use crate::base::{Arena, FileId, Idx, Span};
+use crate::math::draw::Distribution;
 use crate::math::{Op, Scale};
 pub use crate::model::applied::Operands;
 pub use crate::model::collective::{Aggregate, Quantifier};
 pub use crate::model::integrator::Integrator;
+pub use crate::model::kinds::{Inside, ParamValue};
 use crate::model::limits::Limits;
 
 /// Names an [`Expr`].
@@ -61,15 +63,6 @@ pub struct Param {
     pub value: ParamValue,
     /// Where it is declared.
     pub span: Span,
-}
-
-/// The value of a parameter.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ParamValue {
-    /// A number, SI; booleans are 1 and 0.
-    Number(f64),
-    /// A text.
-    Text(String),
 }
 
 /// The type of a value.
@@ -216,28 +209,44 @@ pub struct AgentType {
     pub lets: Vec<Let>,
     /// Recordable names in order of declaration.
     pub declared: Vec<(String, VarRef)>,
+    /// What it says about the values of its agents when they are made.
+    pub initials: Initials,
     /// The tree of modes; number 0 is the root, the agent itself.
     pub modes: Arena<Mode>,
     /// Transitions of all modes in order of declaration in the source.
     pub transitions: Vec<Transition>,
 }
 
-impl AgentType {
-    /// Whether a mode is another one, or inside it.
-    pub fn is_inside(&self, mode: ModeId, other: ModeId) -> bool {
-        std::iter::successors(Some(mode), |&mode| self.modes[mode].parent).any(|around| around == other)
-    }
+/// What an agent type says about the values of its agents when they are made. They may read `index` ([`ExprKind::Local`] 0),
+/// parameters before them, and, but for parameters, variables of the same agent.
+#[derive(Clone, Debug, Default)]
+pub struct Initials {
+    /// Defaults of the numeric parameters.
+    pub params: Vec<Option<Given>>,
+    /// Initial values of the states.
+    pub states: Vec<Option<Given>>,
+    /// Initial values of the discrete variables.
+    pub discretes: Vec<Option<Given>>,
+    /// States and discretes, each after those that its initial value reads.
+    pub order: Vec<VarRef>,
+}
 
-    /// The name of a variable.
-    pub fn variable_name(&self, variable: VarRef) -> &str {
-        match variable {
-            VarRef::State(number) => &self.states[number].name,
-            VarRef::Discrete(number) => &self.discretes[number].name,
-            VarRef::Param(number) => &self.params[number].name,
-            VarRef::Link(number) => &self.links[number].name,
-            VarRef::Let(number) => &self.lets[number].name,
-        }
-    }
+/// What a text gives a variable.
+#[derive(Clone, Copy, Debug)]
+pub enum Given {
+    /// `= value`
+    Value(ExprId),
+    /// `~ distribution`
+    Draw(Draw),
+}
+
+/// A distribution with its parameters.
+#[derive(Clone, Copy, Debug)]
+pub struct Draw {
+    /// Which.
+    pub distribution: Distribution,
+    /// As many as the distribution has; the last is repeated.
+    pub all: [ExprId; 2],
 }
 
 /// A variable of an agent type.
@@ -264,8 +273,41 @@ pub struct Link {
     pub ty: TypeId,
     /// A parameter of agent type: never none.
     pub required: bool,
+    /// What it follows from, if it has an expression of its own: the first case that holds says whom it leads to.
+    pub cases: Vec<LinkCase>,
     /// Where it is declared.
     pub span: Span,
+}
+
+/// One case of the expression of a link.
+#[derive(Clone, Debug)]
+pub struct LinkCase {
+    /// When it holds; none: always.
+    pub condition: Option<ExprId>,
+    /// Whom the link leads to.
+    pub target: LinkTarget,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// Whom a link leads to.
+#[derive(Clone, Debug)]
+pub enum LinkTarget {
+    /// `none`.
+    Nobody,
+    /// An agent, which may be none.
+    Agent(ExprId),
+    /// `nearest o in other Car where filter by key`: whoever has the least key; none if nobody belongs to the range.
+    Nearest {
+        /// The name it binds, and the set.
+        binder: BinderId,
+        /// Without the agent itself.
+        other: bool,
+        /// `where`.
+        filter: Option<ExprId>,
+        /// `by`.
+        key: ExprId,
+    },
 }
 
 /// `let name = value`.
@@ -372,25 +414,6 @@ pub struct Destination {
     pub inside: Inside,
 }
 
-impl Destination {
-    /// What stands behind the mode's path: nothing, or `.history`.
-    pub fn suffix(self) -> &'static str {
-        match self.inside {
-            Inside::Initial => "",
-            Inside::History => ".history",
-        }
-    }
-}
-
-/// Which submode of a mode is entered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Inside {
-    /// The initial one.
-    Initial,
-    /// `M.history`: the one that was active last, at *its* initial one; the initial one if the mode was never active.
-    History,
-}
-
 /// What makes a transition fire.
 #[derive(Clone, Debug)]
 pub enum Trigger {
@@ -441,6 +464,34 @@ pub enum Action {
         /// Where it stands.
         span: Span,
     },
+    /// Makes an agent, at the end of the micro-step.
+    Create(Box<Create>),
+    /// Removes an agent, at the end of the micro-step; nothing if the expression is `none`.
+    Destroy {
+        /// Which.
+        agent: ExprId,
+        /// Where it stands.
+        span: Span,
+    },
+}
+
+/// `create Type(arguments) in Mode`: what the arguments do not give comes from the type's [`Initials`].
+#[derive(Clone, Debug)]
+pub struct Create {
+    /// The type of the agent.
+    pub ty: TypeId,
+    /// The leaf mode it starts in.
+    pub mode: ModeId,
+    /// By parameter, what the argument gives.
+    pub params: Vec<Option<Given>>,
+    /// By state.
+    pub states: Vec<Option<Given>>,
+    /// By discrete variable.
+    pub discretes: Vec<Option<Given>>,
+    /// By link, the agent.
+    pub links: Vec<Option<ExprId>>,
+    /// Where it stands.
+    pub span: Span,
 }
 
 /// `interaction name(a: A, b: B) { }`.
@@ -467,18 +518,6 @@ pub struct Population {
     pub agents: Vec<Instance>,
     /// Discrete variables that every agent of their type starts with a value that the text declares as a constant.
     pub fixed: Vec<(TypeId, usize)>,
-}
-
-impl Population {
-    /// The path of an agent: `fast`, `cars[3]`.
-    pub fn agent_name(&self, agent: usize) -> String {
-        let after = self.blocks.partition_point(|block| block.first <= agent);
-        match self.blocks[..after].last() {
-            Some(block) if block.array => format!("{}[{}]", block.name, agent - block.first),
-            Some(block) => block.name.clone(),
-            None => format!("#{agent}"),
-        }
-    }
 }
 
 /// `name = Type[count](...)`.
@@ -536,26 +575,13 @@ pub struct Run {
     pub span: Option<Span>,
 }
 
-impl Default for Run {
-    fn default() -> Self {
-        Self {
-            until: None,
-            tolerance: 1e-6,
-            absolute: None,
-            seed: 0,
-            integrator: Integrator::Auto,
-            records: Vec::new(),
-            events: None,
-            span: None,
-        }
-    }
-}
-
 /// `record ... every d to "file"`.
 #[derive(Clone, Debug)]
 pub struct Record {
-    /// The numbers of the agents, rising.
+    /// The numbers of the agents that are there at t = 0, rising.
     pub agents: Vec<usize>,
+    /// For each agent type (by number), whether agents that are created later are recorded, too.
+    pub born: Vec<bool>,
     /// The names of the columns in declared order.
     pub columns: Vec<String>,
     /// For each agent type (by number), for each column, the variable; none: an empty cell.

@@ -23,6 +23,9 @@ impl<'a> Context<'a> {
             let ty = self.model.binders[binder].ty;
             return self.push(ExprKind::Bound(binder), Ty::Agent(ty), span);
         }
+        if let Some(&(_, link)) = scope.nearest.iter().find(|(bound, _)| *bound == name) {
+            return link;
+        }
         if let Some(number) = scope.locals.iter().position(|(local, _)| *local == name) {
             let slot = scope.locals[number].1;
             let value = self.push(ExprKind::Local(number), slot.ty, span);

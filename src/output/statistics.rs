@@ -33,6 +33,8 @@ pub fn statistics(report: &Report<'_>) -> String {
         "jacobians": stats.jacobians,
         "guard_evaluations": stats.guard_evaluations,
         "guard_ranges": stats.guard_ranges,
+        "places": stats.places,
+        "guard_places": stats.guard_places,
         "pairs_listed": stats.pairs_listed,
         "undecided_roots": stats.undecided_roots,
         "cuts": stats.cuts,
@@ -88,7 +90,13 @@ fn false_assert(claim: &FalseAssert, report: &Report<'_>) -> Value {
 
 fn types(report: &Report<'_>) -> Value {
     let of_type = report.outcome.stats.types.iter().map(|ty| {
-        let counts = json!({ "agents": ty.agents, "steps": ty.steps, "events": ty.events });
+        let counts = json!({
+            "agents": ty.agents,
+            "created": ty.created,
+            "destroyed": ty.destroyed,
+            "steps": ty.steps,
+            "events": ty.events,
+        });
         (ty.name.clone(), counts)
     });
     Value::Object(of_type.collect::<Map<_, _>>())

@@ -20,7 +20,8 @@ pub fn summary(report: &Report<'_>) -> String {
     line(&mut text, format_args!("{}: {}", report.model, ending(report)));
     let agents = counted(report.cast.agents.len() as u64, "agent");
     let (events, steps) = (counted(stats.events, "event"), counted(stats.steps, "step"));
-    line(&mut text, format_args!("  {agents}, {events}, {steps} ({} rejected)", grouped(stats.rejected)));
+    let (turnover, rejected) = (turnover(report), grouped(stats.rejected));
+    line(&mut text, format_args!("  {agents}{turnover}, {events}, {steps} ({rejected} rejected)"));
     if let [_, (_, 1..)] = stats.methods[..] {
         let by = stats.methods.iter().map(|(name, steps)| format!("{} by {name}", grouped(*steps)));
         line(&mut text, format_args!("  steps      {}", by.collect::<Vec<_>>().join(", ")));
@@ -34,6 +35,17 @@ pub fn summary(report: &Report<'_>) -> String {
         line(&mut text, format_args!("  wrote      {}", report.files.join(", ")));
     }
     text
+}
+
+/// How many agents have come and gone, if any.
+fn turnover(report: &Report<'_>) -> String {
+    let types = &report.outcome.stats.types;
+    let (created, destroyed): (u64, u64) =
+        types.iter().fold((0, 0), |sum, ty| (sum.0 + ty.created, sum.1 + ty.destroyed));
+    match (created, destroyed) {
+        (0, 0) => String::new(),
+        _ => format!(" ({created} created, {destroyed} destroyed)"),
+    }
 }
 
 /// `ended at t = 30 s`, and why.

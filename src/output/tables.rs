@@ -12,7 +12,7 @@ use super::final_states::FinalStates;
 use super::table::Sink;
 use super::trajectory::Trajectory;
 use crate::base::SourceMap;
-use crate::runtime::observe::{Event, Explanation, Last, Observer, Progress, Row, Undecided};
+use crate::runtime::observe::{Event, Explanation, Last, Observer, Progress, Row, Undecided, Who};
 
 /// How long what has been told may wait before it is in the files.
 const WAIT: Duration = Duration::from_secs(1);
@@ -33,7 +33,7 @@ pub struct Tables<'a> {
     rows: u64,
     writing: Duration,
     /// Events of each agent.
-    events: BTreeMap<usize, u64>,
+    events: BTreeMap<Who, u64>,
 }
 
 impl<'a> Tables<'a> {

@@ -6,7 +6,7 @@ use std::sync::{Arc, LazyLock, Mutex};
 use super::*;
 use crate::base::{Diagnostic, SourceMap, write_number};
 use crate::runtime::observe::{
-    Cell, End, Event, FalseAssert, Last, Observer, Outcome, Row, Stats, TypeStats,
+    Cell, End, Event, FalseAssert, Last, Observer, Outcome, Row, Stats, TypeStats, Who,
 };
 
 /// Bytes that a test can look at afterwards.
@@ -50,11 +50,13 @@ fn cast() -> Cast {
         agents: names(&["fast", "cars[0]", "odd, name"]),
         types: vec![
             TypeColumns {
+                name: "Car".into(),
                 states: names(&["x", "y"]),
                 discretes: names(&["lane"]),
                 discrete_kinds: vec![Kind::Number],
             },
             TypeColumns {
+                name: "Lamp".into(),
                 states: names(&["y"]),
                 discretes: names(&["on"]),
                 discrete_kinds: vec![Kind::Bool],
@@ -63,8 +65,12 @@ fn cast() -> Cast {
     }
 }
 
+fn who(number: usize) -> Who {
+    Who { number, ty: 0 }
+}
+
 fn event(time: f64) -> Event<'static> {
-    Event { time, micro: 0, transition: "Car.left", agent: 0, other: None, modes: None }
+    Event { time, micro: 0, transition: "Car.left", agent: who(0), other: None, modes: None }
 }
 
 #[test]
@@ -109,8 +115,8 @@ fn an_event_is_one_row() {
         time: 1e-9,
         micro: 2,
         transition: "Bump.pair",
-        agent: 1,
-        other: Some(2),
+        agent: who(1),
+        other: Some(who(2)),
         modes: Some(("Drive.Cruise", "Brake")),
     };
     tables.event(&bump).unwrap();
@@ -135,8 +141,9 @@ fn each_record_has_its_table_and_each_kind_of_cell_its_form() {
         .map(|(name, kind)| Column::new(name, kind))
         .collect();
     tables.trajectory(second.sink(), &columns).unwrap();
-    let cells = [Cell::Empty, Cell::Number(2.0), Cell::Bool(true), Cell::Agent(Some(1)), Cell::Agent(None)];
-    let row = Row { time: 0.25, micro: 1, agent: 0, mode: "Spiral", cells: &cells };
+    let cells =
+        [Cell::Empty, Cell::Number(2.0), Cell::Bool(true), Cell::Agent(Some(who(1))), Cell::Agent(None)];
+    let row = Row { time: 0.25, micro: 1, agent: who(0), mode: "Spiral", cells: &cells };
     tables.sample(1, &row).unwrap();
     tables.finish().unwrap();
     assert_eq!(first.text(), "time,micro,agent,mode,x\n");
@@ -148,11 +155,23 @@ fn final_states_of_several_types_share_columns_by_name() {
     let (cast, page) = (cast(), Page::default());
     let mut tables = Tables::new(&cast);
     tables.final_states(page.sink()).unwrap();
-    let car =
-        Last { time: 20.0, agent: 0, ty: 0, mode: "", states: &[1.0, 2.0], discretes: &[Cell::Number(3.0)] };
+    let car = Last {
+        time: 20.0,
+        agent: who(0),
+        ty: 0,
+        mode: "",
+        states: &[1.0, 2.0],
+        discretes: &[Cell::Number(3.0)],
+    };
     tables.last(&car).unwrap();
-    let lamp =
-        Last { time: 20.0, agent: 1, ty: 1, mode: "On", states: &[-0.5], discretes: &[Cell::Bool(false)] };
+    let lamp = Last {
+        time: 20.0,
+        agent: who(1),
+        ty: 1,
+        mode: "On",
+        states: &[-0.5],
+        discretes: &[Cell::Bool(false)],
+    };
     tables.last(&lamp).unwrap();
     tables.finish().unwrap();
     assert_eq!(page.text(), "time,agent,mode,x,y,lane,on\n20,fast,,1,2,3,\n20,cars[0],On,,-0.5,,false\n");
@@ -169,7 +188,7 @@ fn a_full_disk_is_reported_with_the_name_of_the_file() {
 }
 
 fn outcome(end: End) -> Outcome {
-    let ty = TypeStats { name: "Car".into(), agents: 3, steps: 40, events: 7 };
+    let ty = TypeStats { name: "Car".into(), agents: 3, created: 2, destroyed: 1, steps: 40, events: 7 };
     Outcome {
         end,
         time: 12.5,
@@ -185,7 +204,7 @@ fn outcome(end: End) -> Outcome {
             span: Default::default(),
             message: Some("rear-end collision".into()),
             time: 3.5,
-            agent: 1,
+            agent: who(1),
             mode: "Drive".into(),
             compared: Vec::new(),
             count: 2,
@@ -260,7 +279,7 @@ fn statistics_have_the_promised_keys() {
 #[test]
 fn every_end_is_told() {
     let cast = cast();
-    let stop = End::Stop { reason: Some("all home".into()), agent: 1, by: "Car.home".into() };
+    let stop = End::Stop { reason: Some("all home".into()), agent: who(1), by: "Car.home".into() };
     let ends = [
         (End::Until, "ended at t = 12.5 s"),
         (stop, "stopped at t = 12.5 s by Car.home of cars[0]: all home"),

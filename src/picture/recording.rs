@@ -5,10 +5,12 @@ use std::io;
 
 use crate::model::Diagram;
 use crate::output::Cast;
-use crate::runtime::observe::{Cell, Event, Observer, Row};
+use crate::runtime::observe::{Cell, Event, Observer, Row, Who};
 
 /// Of more events only the first so many are kept.
 const EVENTS_MAX: usize = 50_000;
+/// Agents with higher numbers are not shown.
+const TRACKS_MAX: usize = 20_000;
 
 /// The observer.
 pub struct Recording<'a> {
@@ -87,13 +89,19 @@ impl<'a> Recording<'a> {
         }
     }
 
-    fn track(&mut self, agent: usize, n_columns: usize) -> &mut Track {
-        while self.tracks.len() <= agent {
-            let name = self.cast.agent(self.tracks.len()).into_owned();
+    /// The track of an agent; those of agents with lower numbers that have not been met have no values yet.
+    fn track(&mut self, agent: Who, n_columns: usize) -> &mut Track {
+        while self.tracks.len() <= agent.number {
+            let who = Who { number: self.tracks.len(), ..agent };
+            let name = self.cast.agent(who).into_owned();
             let values = vec![Vec::new(); n_columns];
             self.tracks.push(Track { name, values, modes: Vec::new() });
         }
-        &mut self.tracks[agent]
+        let track = &mut self.tracks[agent.number];
+        if track.modes.is_empty() {
+            track.name = self.cast.agent(agent).into_owned();
+        }
+        track
     }
 }
 
@@ -114,21 +122,22 @@ impl Observer for Recording<'_> {
             let modes = event
                 .modes
                 .map(|(from, to)| (number_in(&mut self.paths, from), number_in(&mut self.paths, to)));
-            let Event { time, agent, other, .. } = *event;
+            let (time, agent) = (event.time, event.agent.number);
+            let other = event.other.map(|other| other.number);
             self.events.push(Happened { time, transition, agent, other, modes });
         }
         Ok(())
     }
 
     fn sample(&mut self, record: usize, row: &Row<'_>) -> io::Result<()> {
-        if record != self.record {
+        if record != self.record || row.agent.number >= TRACKS_MAX {
             return Ok(());
         }
         if self.times.last() != Some(&row.time) {
             self.times.push(row.time);
         }
         let n = self.times.len();
-        let ty = self.types.get(row.agent).copied().unwrap_or(0);
+        let ty = row.agent.ty;
         let mode = self.numbers.get(&(ty, row.mode.to_string())).copied().unwrap_or(u16::MAX);
         let track = self.track(row.agent, row.cells.len());
         track.fill(n - 1);

@@ -12,7 +12,8 @@ use crate::runtime::engine::{Engine, StopRequest};
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::fold;
 use crate::runtime::guards::Origin;
-use crate::runtime::population::Slots;
+use crate::runtime::lives::{Conceived, Doomed};
+use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::Depth;
 use crate::runtime::route::{Move, reached, remember, route};
 use crate::runtime::truth;
@@ -39,6 +40,10 @@ pub struct Effect {
     exits: Vec<Write>,
     /// Changes of mode.
     pub moves: Vec<Move>,
+    /// Agents to be made.
+    pub conceived: Vec<Conceived>,
+    /// Agents to be removed.
+    pub doomed: Vec<Doomed>,
 }
 
 /// What has been written in a micro-step.
@@ -50,6 +55,16 @@ pub struct Written {
     pub restarted: FxHashSet<usize>,
     /// Changes of mode.
     pub moves: Vec<Move>,
+    /// Agents still to be made, and still to be removed.
+    pub conceived: Vec<Conceived>,
+    /// See `conceived`.
+    pub doomed: Vec<Doomed>,
+    /// Agents that have been made.
+    pub born: Vec<usize>,
+    /// Types of agents that have been removed.
+    pub died: Vec<usize>,
+    /// Agents whose links lead somewhere else, and those who have lost a member of their group.
+    pub relinked: Vec<usize>,
 }
 
 impl Engine<'_, '_> {
@@ -58,7 +73,7 @@ impl Engine<'_, '_> {
         let (transition, pair) = match self.guards.definition(instance).origin {
             Origin::Transition(transition) => (transition, false),
             Origin::Pair(pair) => (&pair.transition, true),
-            Origin::Claim(_) => return Ok(Effect::default()),
+            Origin::Claim(_) | Origin::Link(_) => return Ok(Effect::default()),
         };
         let mut effect = Effect::default();
         if let Some(target) = transition.target
@@ -136,11 +151,22 @@ impl Engine<'_, '_> {
                     let mut exit = Effect::default();
                     self.exit(&change, &mut exit)?;
                     effect.exits.append(&mut exit.writes);
+                    effect.conceived.append(&mut exit.conceived);
+                    effect.doomed.append(&mut exit.doomed);
                     effect.moves.push(change);
                 }
                 ActionStep::Stop { reason, .. } => {
-                    let request = StopRequest { reason: reason.clone(), agent: slots[0], by: by.to_string() };
+                    let agent = self.agents.who(slots[0]);
+                    let request = StopRequest { reason: reason.clone(), agent, by: by.to_string() };
                     self.stop.get_or_insert(request);
+                }
+                ActionStep::Create(birth) => {
+                    effect.conceived.push(self.conceive(birth, &list.frame, slots, own)?);
+                }
+                ActionStep::Destroy { slot, span } => {
+                    if slots[*slot] != ABSENT {
+                        effect.doomed.push(Doomed { agent: slots[*slot], span: *span });
+                    }
                 }
             }
         }
@@ -179,8 +205,9 @@ impl Engine<'_, '_> {
     }
 
     /// Writes the effects of a micro-step, then runs and writes the entry actions, outer modes first.
-    pub fn carry_out(&mut self, effects: &[Effect]) -> Result<Written, Failure> {
+    pub fn carry_out(&mut self, effects: Vec<Effect>) -> Result<Written, Failure> {
         let mut written = Written::default();
+        let mut moves: Vec<Move> = Vec::new();
         for effect in effects {
             for write in &effect.writes {
                 self.write(write, &mut written);
@@ -188,13 +215,16 @@ impl Engine<'_, '_> {
             for change in &effect.moves {
                 self.enter_mode(change, &mut written);
             }
+            moves.extend(effect.moves);
+            written.conceived.extend(effect.conceived);
+            written.doomed.extend(effect.doomed);
         }
         self.present.forget();
-        let moves: Vec<Move> = effects.iter().flat_map(|effect| effect.moves.iter().cloned()).collect();
         let entries: Vec<(usize, &[usize])> =
             moves.iter().map(|change| (change.agent, change.entered.as_slice())).collect();
         self.run_entries(&entries, &mut written)?;
         written.moves = moves;
+        self.turn_over(&mut written)?;
         self.regroup(&mut written);
         self.set_locks(written.restarted.iter().copied());
         Ok(written)
@@ -229,6 +259,8 @@ impl Engine<'_, '_> {
             for write in &effect.writes {
                 self.write(write, written);
             }
+            written.conceived.append(&mut effect.conceived);
+            written.doomed.append(&mut effect.doomed);
             self.present.forget();
         }
         Ok(())
@@ -261,7 +293,7 @@ impl Engine<'_, '_> {
     }
 
     /// Keeps an agent's rows as they were before this micro-step.
-    fn remember(&mut self, agent: usize, written: &mut Written) {
+    pub fn remember(&mut self, agent: usize, written: &mut Written) {
         if written.before.contains_key(&agent) {
             return;
         }
@@ -272,7 +304,7 @@ impl Engine<'_, '_> {
 
     /// Ends the past of an agent's group here: its segments are cut, its next step begins afresh. So it is with all groups
     /// whose flows read it.
-    fn restart(&mut self, agent: usize, written: &mut Written) {
+    pub fn restart(&mut self, agent: usize, written: &mut Written) {
         let time = self.present.time;
         let mut waiting = vec![agent];
         while let Some(agent) = waiting.pop() {
@@ -295,7 +327,7 @@ impl Engine<'_, '_> {
     }
 
     /// Restarts the agents whose flow reads an auxiliary column of `agent`.
-    fn restart_readers(&mut self, agent: usize, column: usize, written: &mut Written) {
+    pub fn restart_readers(&mut self, agent: usize, column: usize, written: &mut Written) {
         for reader in self.agents.readers(agent) {
             let flow = self.agents.flow(reader);
             let slots = self.agents.slots(&flow.frame, &[reader]);
@@ -306,9 +338,11 @@ impl Engine<'_, '_> {
         }
     }
 
-    /// Divides the groups of agents that changed their mode anew (rule 13).
-    fn regroup(&mut self, written: &mut Written) {
+    /// Divides the groups anew of agents that changed their mode or their links, or have come to be (rule 13).
+    pub fn regroup(&mut self, written: &mut Written) {
         let mut changed: Vec<usize> = written.moves.iter().map(|change| change.agent).collect();
+        changed.extend(written.born.iter().chain(&written.relinked));
+        changed.retain(|&agent| self.agents.is_alive(agent));
         changed.sort_unstable();
         changed.dedup();
         let is_free = |&agent: &usize| {
@@ -376,7 +410,7 @@ pub fn claims(engine: &Engine<'_, '_>, instance: u32, slots: &Slots) -> Vec<(usi
     let (transition, pair): (&TransitionSystem, bool) = match engine.guards.definition(instance).origin {
         Origin::Transition(transition) => (transition, false),
         Origin::Pair(pair) => (&pair.transition, true),
-        Origin::Claim(_) => return claims,
+        Origin::Claim(_) | Origin::Link(_) => return claims,
     };
     let system = |agent: usize| &engine.program.types[engine.agents.agents[agent].ty];
     let mut regions = |agent: usize, source: usize| {
@@ -394,6 +428,11 @@ pub fn claims(engine: &Engine<'_, '_>, instance: u32, slots: &Slots) -> Vec<(usi
         regions(slots[0], transition.source);
         moves.extend(transition.target.map(|target| engine.route(slots[0], transition.source, target)));
     }
+    dooms(&transition.actions.steps, &mut |slot| {
+        if slots[slot] != ABSENT {
+            regions(slots[slot], 0);
+        }
+    });
     let own = transition.actions.writes.iter();
     claims.extend(own.map(|&(slot, target)| (slots[slot], Claimed::Column(target))));
     for change in moves {
@@ -406,6 +445,23 @@ pub fn claims(engine: &Engine<'_, '_>, instance: u32, slots: &Slots) -> Vec<(usi
     claims
 }
 
+/// Calls `visit` with the slot of every agent that some actions remove.
+fn dooms(steps: &[ActionStep], visit: &mut dyn FnMut(usize)) {
+    for step in steps {
+        match step {
+            ActionStep::Destroy { slot, .. } => visit(*slot),
+            ActionStep::If { then, otherwise, .. } => {
+                dooms(then, visit);
+                dooms(otherwise, visit);
+            }
+            ActionStep::Assign { .. }
+            | ActionStep::Goto { .. }
+            | ActionStep::Stop { .. }
+            | ActionStep::Create(_) => {}
+        }
+    }
+}
+
 /// Calls `visit` with every change of mode in some actions.
 fn gotos(steps: &[ActionStep], visit: &mut dyn FnMut(usize, Destination)) {
     for step in steps {
@@ -415,7 +471,10 @@ fn gotos(steps: &[ActionStep], visit: &mut dyn FnMut(usize, Destination)) {
                 gotos(then, visit);
                 gotos(otherwise, visit);
             }
-            ActionStep::Assign { .. } | ActionStep::Stop { .. } => {}
+            ActionStep::Assign { .. }
+            | ActionStep::Stop { .. }
+            | ActionStep::Create(_)
+            | ActionStep::Destroy { .. } => {}
         }
     }
 }

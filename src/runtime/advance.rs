@@ -116,6 +116,13 @@ impl Stepper {
         self.stiff.contains(&(agent, mode))
     }
 
+    /// Another agent has the place of one that is dead.
+    pub fn forget(&mut self, place: usize) {
+        if !self.stiff.is_empty() {
+            self.stiff.retain(|&(agent, _)| agent != place);
+        }
+    }
+
     /// Advances a group by one step, taken now or before; it may end early at a kink.
     pub fn advance(&mut self, agents: &mut Agents<'_>, group: &mut Group, curves: &mut CurveRows) -> Advance {
         if take_ahead(agents, group) {

@@ -185,6 +185,20 @@ impl<'p> Cold<'p> {
         self.herds[place.herd as usize].halt(place.place as usize);
     }
 
+    /// Makes room for an agent in a place that nobody has.
+    pub fn admit(&mut self, place: usize) {
+        let nowhere = Place { herd: NONE, place: 0, cold: false };
+        if place == self.places.len() {
+            self.places.push(nowhere);
+        }
+        self.places[place] = nowhere;
+    }
+
+    /// Takes an agent out that is not cold.
+    pub fn dismiss(&mut self, agent: usize) {
+        self.leave(agent);
+    }
+
     /// Takes an agent out of its herd, if it is in one.
     fn leave(&mut self, agent: usize) {
         let Place { herd, place, .. } = self.places[agent];

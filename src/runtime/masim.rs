@@ -77,7 +77,8 @@ impl Engine<'_, '_> {
     /// Rule 6: groups, locks, entry actions, arming, micro-steps at t = 0.
     pub fn begin(&mut self) -> Result<(), Failure> {
         self.present.go(0.0);
-        let all: Vec<usize> = (0..self.agents.len()).collect();
+        let all = self.agents.living();
+        self.set_links(&all);
         self.set_locks(all.iter().copied());
         let mut written = Written::default();
         for group in self.groups.divide(&mut self.agents, &all, 0.0, &|_| None) {
@@ -86,11 +87,15 @@ impl Engine<'_, '_> {
         let entries: Vec<(usize, &[usize])> =
             all.iter().map(|&agent| (agent, self.agents.mode(agent).active.as_slice())).collect();
         self.run_entries(&entries, &mut written)?;
+        self.turn_over(&mut written)?;
+        self.regroup(&mut written);
+        self.end_lives();
         self.set_locks(written.restarted.iter().copied());
         self.recorder.begin(&self.agents, &mut self.present, self.observer)?;
         self.begin_lists()?;
         self.arm_all()?;
         let instances = 0..self.guards.instances.len() as u32;
+        self.refresh_links(&instances.clone().collect::<Vec<u32>>())?;
         let enabled = instances.clone().filter(|&instance| self.enabled(instance));
         let candidates = enabled.map(|instance| Candidate { instance, pulse: None }).collect();
         self.instant(candidates)?;
@@ -106,7 +111,7 @@ impl Engine<'_, '_> {
             return Err(Reason::NeverEnds { time: self.present.time }.into());
         }
         let end = self.time_end;
-        for agent in 0..self.agents.len() {
+        for agent in self.agents.living() {
             self.recorder.step(&self.agents, &mut self.present, agent, end, self.observer)?;
         }
         self.present.go(end);

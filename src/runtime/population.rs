@@ -1,5 +1,9 @@
 //! The agents of a run: their rows, their links, and which agents read which.
 //!
+//! An agent has a *place*, by which everything in the runtime refers to it, and which another has after its death; and a
+//! *number*, which nobody else ever has: it orders agents, and names those that are created. Among the agents of its type
+//! it has a *seat*, by which comparisons below quantifiers are found.
+//!
 //! An agent's `states` are those at its clock (the end of its last step or the instant of its last event); its
 //! `segment` holds the way there. Rows at the present instant are made on demand in [`crate::runtime::present`].
 
@@ -8,8 +12,12 @@ use smallvec::SmallVec;
 use crate::codegen::program::{Flow, Frame, Layout, ModeSystem, Program, Slot};
 use crate::runtime::ahead::Ahead;
 use crate::runtime::cold::Cold;
+use crate::runtime::observe::Who;
 use crate::runtime::route::{begin_histories, first};
 use crate::runtime::solve::segment::Segment;
+
+/// How many seats a type gets that has had none.
+const SEATS_LEAST: usize = 8;
 
 /// No agent: what a slot holds whose link is `none`.
 pub const ABSENT: usize = usize::MAX;
@@ -17,13 +25,22 @@ pub const ABSENT: usize = usize::MAX;
 /// The agents in the slots of a frame; [`ABSENT`] where there is none.
 pub type Slots = SmallVec<[usize; 4]>;
 
+/// Nobody: what has a place and no number yet, or none any more.
+const NOBODY: usize = usize::MAX;
+
 /// One agent.
 #[derive(Clone, Debug)]
 pub struct Agent {
+    /// Its number, rising in the order of births; that of a dead one is void.
+    pub number: usize,
     /// Its type.
     pub ty: usize,
-    /// Its place among the agents of its type.
-    pub rank: usize,
+    /// Its seat among the agents of its type.
+    pub seat: usize,
+    /// What its random numbers belong to, if it was created: [`crate::math::draw::Key::word`] of its creator.
+    pub word: Option<u64>,
+    /// How many agents it has created.
+    pub created: u64,
     /// The configuration it is in: a leaf mode, or one of each region.
     pub mode: usize,
     /// Its group.
@@ -42,12 +59,24 @@ pub struct Agent {
 pub struct Agents<'p> {
     /// The program they follow.
     pub program: &'p Program,
-    /// By number.
+    /// By place.
     pub agents: Vec<Agent>,
     /// Who runs ahead.
     pub cold: Cold<'p>,
-    /// The numbers of the agents of each type, rising.
+    /// The places of the living agents of each type, in the order of their numbers.
     pub of_type: Vec<Vec<usize>>,
+    /// For each type, who has which seat; [`ABSENT`] if nobody has it.
+    pub seats: Vec<Vec<usize>>,
+    /// How many agents there have been.
+    pub n_numbers: usize,
+    /// For each type, how many have been created and destroyed.
+    pub turnover: Vec<[u64; 2]>,
+    /// Seats of each type that nobody has.
+    free_seats: Vec<Vec<usize>>,
+    /// Places that nobody has.
+    free: Vec<usize>,
+    /// Places of those who died in the instant at hand.
+    retired: Vec<usize>,
     /// For each agent, those that have a link to it.
     linked_from: Vec<Vec<usize>>,
     /// The longest chain of links that any frame follows.
@@ -80,11 +109,12 @@ impl<'p> Agents<'p> {
                 *column = value;
             }
             begin_histories(system, mode, &mut aux);
-            let rank = of_type[ty].len();
+            let seat = of_type[ty].len();
             of_type[ty].push(number);
             let segment = Segment::at(0.0, &instance.states);
             let (states, ahead) = (instance.states.clone(), Ahead::default());
-            agents.push(Agent { ty, rank, mode, group: 0, states, aux, segment, ahead });
+            let (word, created, group) = (None, 0, 0);
+            agents.push(Agent { number, ty, seat, word, created, mode, group, states, aux, segment, ahead });
         }
         let mut linked_from = vec![Vec::new(); agents.len()];
         for (number, instance) in program.population.agents.iter().enumerate() {
@@ -94,6 +124,12 @@ impl<'p> Agents<'p> {
         }
         Self {
             program,
+            seats: of_type.clone(),
+            n_numbers: agents.len(),
+            turnover: vec![[0; 2]; program.types.len()],
+            free_seats: vec![Vec::new(); program.types.len()],
+            free: Vec::new(),
+            retired: Vec::new(),
             agents,
             of_type,
             linked_from,
@@ -199,9 +235,120 @@ impl<'p> Agents<'p> {
         &self.absent
     }
 
-    /// How many there are.
+    /// How many places there are, those of dead agents included.
     pub fn len(&self) -> usize {
         self.agents.len()
+    }
+
+    /// How many are alive.
+    pub fn n_living(&self) -> usize {
+        self.of_type.iter().map(Vec::len).sum()
+    }
+
+    /// Whether somebody who is alive has this place.
+    pub fn is_alive(&self, agent: usize) -> bool {
+        self.agents.get(agent).is_some_and(|agent| agent.number != NOBODY)
+    }
+
+    /// The places of all who are alive, in the order of their numbers.
+    pub fn living(&self) -> Vec<usize> {
+        let mut all: Vec<usize> = self.of_type.iter().flatten().copied().collect();
+        all.sort_unstable_by_key(|&agent| self.agents[agent].number);
+        all
+    }
+
+    /// The number of who has a place; greater than all for [`ABSENT`].
+    pub fn number(&self, agent: usize) -> usize {
+        if agent == ABSENT { usize::MAX } else { self.agents[agent].number }
+    }
+
+    /// An agent as outputs know it.
+    pub fn who(&self, agent: usize) -> Who {
+        let agent = &self.agents[agent];
+        Who { number: agent.number, ty: agent.ty }
+    }
+
+    /// Takes a new agent in, with the next number and no links; returns its place. Whether the type has a free seat has been
+    /// seen to: [`Agents::has_seat`].
+    pub fn admit(&mut self, mut agent: Agent) -> usize {
+        let ty = agent.ty;
+        agent.number = self.n_numbers;
+        self.n_numbers += 1;
+        self.turnover[ty][0] += 1;
+        let place = self.free.pop().unwrap_or(self.agents.len());
+        agent.seat = self.free_seats[ty].pop().expect("a seat has been made");
+        agent.aux[Layout::NUMBER] = place as f64;
+        self.seats[ty][agent.seat] = place;
+        self.of_type[ty].push(place);
+        if place == self.agents.len() {
+            self.agents.push(agent);
+            self.linked_from.push(Vec::new());
+        } else {
+            self.agents[place] = agent;
+        }
+        place
+    }
+
+    /// Whether a type has a seat that nobody has.
+    pub fn has_seat(&self, ty: usize) -> bool {
+        !self.free_seats[ty].is_empty()
+    }
+
+    /// Gives a type more seats; they are behind those that there are.
+    pub fn add_seats(&mut self, ty: usize) {
+        let before = self.seats[ty].len();
+        let after = (2 * before).max(SEATS_LEAST);
+        self.seats[ty].resize(after, ABSENT);
+        self.free_seats[ty].extend((before..after).rev());
+    }
+
+    /// Takes a dead agent out of all sets, and its links from those whom they led to. Its place is free after the instant.
+    pub fn dismiss(&mut self, place: usize) {
+        let layout = self.layout(place);
+        for link in 0..layout.n_links {
+            self.link(place, link, ABSENT);
+        }
+        let Agent { ty, seat, number, .. } = self.agents[place];
+        let rank = self.of_type[ty].partition_point(|&other| self.agents[other].number < number);
+        self.of_type[ty].remove(rank);
+        self.seats[ty][seat] = ABSENT;
+        self.free_seats[ty].push(seat);
+        self.turnover[ty][1] += 1;
+        self.agents[place].number = NOBODY;
+        self.retired.push(place);
+    }
+
+    /// The instant is over: nothing refers to those who died in it.
+    pub fn free_retired(&mut self) {
+        self.free.append(&mut self.retired);
+    }
+
+    /// How many places cannot be had, by the living or by those who died in the instant at hand.
+    pub fn n_occupied(&self) -> usize {
+        self.n_living() + self.retired.len()
+    }
+
+    /// Leads a link of an agent to another, or to [`ABSENT`].
+    pub fn link(&mut self, from: usize, link: usize, to: usize) {
+        let column = self.layout(from).link(link);
+        let before = self.linked(from, link);
+        if before == to {
+            return;
+        }
+        if before != ABSENT {
+            let readers = &mut self.linked_from[before];
+            let found = readers.iter().position(|&reader| reader == from);
+            readers.swap_remove(found.expect("whom a link leads to knows where it comes from"));
+        }
+        if to != ABSENT {
+            self.linked_from[to].push(from);
+        }
+        self.agents[from].aux[column] = if to == ABSENT { -1.0 } else { to as f64 };
+    }
+
+    /// Who has a link to an agent; once for each link.
+    pub fn linked_from(&self, agent: usize) -> &[usize] {
+        &self.linked_from[agent]
     }
 
     /// The mode an agent is in.
@@ -248,7 +395,8 @@ impl<'p> Agents<'p> {
         }
     }
 
-    fn linked(&self, from: usize, link: usize) -> usize {
+    /// Whom a link of an agent leads to.
+    pub fn linked(&self, from: usize, link: usize) -> usize {
         if from == ABSENT {
             return ABSENT;
         }
@@ -274,9 +422,21 @@ impl<'p> Agents<'p> {
         readers
     }
 
-    /// The agent's name: `fast`, `cars[3]`.
+    /// The agent's name: `fast`, `cars[3]`, `Car#17`.
     pub fn name(&self, agent: usize) -> String {
-        self.program.population.agent_name(agent)
+        let Agent { number, ty, .. } = self.agents[agent];
+        if number < self.program.population.agents.len() {
+            return self.program.population.agent_name(number);
+        }
+        format!("{}#{number}", self.program.types[ty].name)
+    }
+
+    /// What the random numbers of an agent belong to: its name, if it was there at t = 0.
+    pub fn draw_path(&self, agent: usize) -> String {
+        match self.agents[agent].word {
+            Some(word) => format!("#{word:016x}"),
+            None => self.name(agent),
+        }
     }
 }
 
@@ -328,6 +488,7 @@ fn longest_chain(program: &Program) -> usize {
             mode.claims.iter().for_each(|claim| visit(&claim.frame));
         }
         ty.transitions.iter().for_each(|transition| visit(&transition.frame));
+        ty.links.iter().flat_map(|link| &link.updates).for_each(|update| visit(&update.frame));
     }
     let pairs = program.interactions.iter().flat_map(|interaction| &interaction.transitions);
     pairs.for_each(|pair| visit(&pair.transition.frame));

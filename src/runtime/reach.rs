@@ -22,6 +22,8 @@ use crate::runtime::solve::control::Accuracy;
 struct Kept {
     version: u32,
     first: u32,
+    /// For how many states there is room.
+    room: u32,
     /// From here on they are valid, s.
     since: f64,
     /// Whether each rate is bounded whatever the states are.
@@ -55,8 +57,9 @@ impl Reaches {
     pub fn new(agents: &Agents<'_>, accuracy: Accuracy, time_end: f64) -> Self {
         let mut first = 0;
         let kept = agents.agents.iter().map(|agent| {
-            let kept = Kept { version: u32::MAX, first, since: f64::INFINITY, pure: false };
-            first += agent.states.len() as u32;
+            let room = agent.states.len() as u32;
+            let kept = Kept { version: u32::MAX, first, room, since: f64::INFINITY, pure: false };
+            first += room;
             kept
         });
         let kept: Vec<Kept> = kept.collect();
@@ -71,6 +74,19 @@ impl Reaches {
             absent_aux: vec![f64::NAN; width],
             ranges: 0,
             operations: 0,
+        }
+    }
+
+    /// Makes room for an agent with so many states in a place that nobody has.
+    pub fn admit(&mut self, place: usize, n_states: usize) {
+        if place == self.kept.len() {
+            self.kept.push(Kept { version: u32::MAX, first: 0, room: 0, since: f64::INFINITY, pure: false });
+        }
+        let kept = &mut self.kept[place];
+        (kept.version, kept.since, kept.pure) = (u32::MAX, f64::INFINITY, false);
+        if (kept.room as usize) < n_states {
+            (kept.first, kept.room) = (self.rates.len() as u32, n_states as u32);
+            self.rates.resize(self.rates.len() + n_states, Interval::WHOLE);
         }
     }
 
@@ -135,10 +151,10 @@ impl Reaches {
 
     /// Bounds the rates of an agent that is alone from its anchor on, if what is known of them is not valid there.
     fn refresh(&mut self, agents: &Agents<'_>, group: &Group, agent: usize, anchor: (f64, &[f64])) {
-        let Kept { version, since, first, .. } = self.kept[agent];
+        let Kept { version, since, .. } = self.kept[agent];
         if version != group.version || anchor.0 < since {
             let pure = self.bound(agents, agent, anchor);
-            self.kept[agent] = Kept { version: group.version, first, since: anchor.0, pure };
+            self.kept[agent] = Kept { version: group.version, since: anchor.0, pure, ..self.kept[agent] };
         }
     }
 

@@ -80,7 +80,7 @@ impl Engine<'_, '_> {
         let accuracy = self.stepper.accuracy;
         self.agents.cold = Cold::new(self.program, self.agents.len(), accuracy, self.time_end);
         if self.agents.cold.is_used() {
-            self.hot = (0..self.agents.len()).collect();
+            self.hot = self.agents.living();
         }
     }
 
@@ -91,7 +91,7 @@ impl Engine<'_, '_> {
 
     /// By how much the next window is to be longer than this one, in which the cold agents have taken their steps.
     fn growth(&self, Outlook { n_hot, n_tracked }: Outlook, steps_before: u64) -> f64 {
-        let n = self.agents.len() as f64;
+        let n = self.agents.n_living().max(1) as f64;
         let steps = (self.stepper.counts.steps - steps_before) as f64 / n;
         let hot = n_hot as f64 / n;
         let tracked = n_tracked as f64 / n;
@@ -106,8 +106,10 @@ impl Engine<'_, '_> {
         if counts.steps + counts.rejected <= self.limits.steps_max {
             return Ok(());
         }
-        self.thaw(0);
-        let place = self.place(0);
+        // Somebody has taken steps, and may have died since.
+        let agent = self.agents.living().first().copied().unwrap_or(0);
+        self.thaw(agent);
+        let place = self.place(agent);
         Err(Reason::StepLimit { place, limit: self.limits.steps_max }.into())
     }
 
@@ -122,7 +124,7 @@ impl Engine<'_, '_> {
 
     /// For how long the next lists are to hold, s: longer if few pairs were new in these, shorter if many were.
     fn next_span(&self, n_new: usize) -> f64 {
-        let share = n_new as f64 / self.agents.len() as f64;
+        let share = n_new as f64 / self.agents.n_living().max(1) as f64;
         let growth = (NEW_WANTED / share).sqrt().clamp(1.0 / GROW, GROW);
         (self.neighbours.span * growth).max(SHORTEST * self.horizon())
     }

@@ -158,6 +158,7 @@ pub fn with_flow(graph: Graph, rates: Vec<NodeId>) -> System {
         links: Vec::new(),
         lets: Vec::new(),
         declared: Vec::new(),
+        initials: Default::default(),
         modes: vec![mode],
         regions: vec![0],
         transitions: Vec::new(),

@@ -14,7 +14,7 @@ use hyc::runtime::Algorithm;
 use hyc::runtime::limits::Limits;
 use hyc::runtime::observe::{
     Cause, Cell, End, Explanation, FalseAssert, Last, Observer, Outcome, Row, ShownComparison, Stats,
-    Undecided,
+    Undecided, Who,
 };
 use hyc::runtime::paper::Form;
 
@@ -363,6 +363,7 @@ impl Files for Data<'_> {
 /// Writes everything down.
 struct Recorder {
     agents: Vec<String>,
+    types: Vec<String>,
     variables: Vec<(Vec<String>, Vec<String>)>,
     events: Vec<Fired>,
     samples: Vec<Vec<Sample>>,
@@ -380,8 +381,10 @@ impl Recorder {
             |variables: &[hyc::model::ir::Variable]| variables.iter().map(|v| v.name.clone()).collect();
         let variables = model.types.iter().map(|ty| (names(&ty.states), names(&ty.discretes))).collect();
         let samples = model.run.records.iter().map(|_| Vec::new()).collect();
+        let types = model.types.iter().map(|ty| ty.name.clone()).collect();
         Self {
             agents,
+            types,
             variables,
             events: Vec::new(),
             samples,
@@ -390,6 +393,14 @@ impl Recorder {
             finals: Vec::new(),
             reasons,
         }
+    }
+
+    /// `cars[3]`, `Car#17`
+    fn name(&self, who: Who) -> String {
+        self.agents
+            .get(who.number)
+            .cloned()
+            .unwrap_or_else(|| format!("{}#{}", self.types[who.ty], who.number))
     }
 
     fn run(self, outcome: Outcome, sources: SourceMap) -> Run {
@@ -422,7 +433,7 @@ fn number(cell: &Cell) -> f64 {
         Cell::Empty => f64::NAN,
         Cell::Number(x) => *x,
         Cell::Bool(b) => f64::from(u8::from(*b)),
-        Cell::Agent(agent) => agent.map_or(-1.0, |k| k as f64),
+        Cell::Agent(agent) => agent.map_or(-1.0, |who| who.number as f64),
     }
 }
 
@@ -433,8 +444,8 @@ impl Observer for Recorder {
             time: event.time,
             micro: event.micro,
             transition: event.transition.into(),
-            agent: self.agents[event.agent].clone(),
-            other: event.other.map_or(String::new(), |other| self.agents[other].clone()),
+            agent: self.name(event.agent),
+            other: event.other.map_or(String::new(), |other| self.name(other)),
             from: from.into(),
             to: to.into(),
         });
@@ -442,10 +453,11 @@ impl Observer for Recorder {
     }
 
     fn sample(&mut self, record: usize, row: &Row<'_>) -> io::Result<()> {
+        let agent = self.name(row.agent);
         self.samples[record].push(Sample {
             time: row.time,
             micro: row.micro,
-            agent: self.agents[row.agent].clone(),
+            agent,
             mode: row.mode.into(),
             cells: row.cells.iter().map(number).collect(),
         });
@@ -458,7 +470,7 @@ impl Observer for Recorder {
         let discretes = discretes.iter().cloned().zip(last.discretes.iter().map(number));
         self.finals.push(Final {
             time: last.time,
-            agent: self.agents[last.agent].clone(),
+            agent: self.name(last.agent),
             mode: last.mode.into(),
             values: states.chain(discretes).collect(),
         });
@@ -474,8 +486,8 @@ impl Observer for Recorder {
             time: told.time,
             micro: told.micro,
             transition: told.transition.into(),
-            agent: self.agents[told.agent].clone(),
-            other: told.other.map_or(String::new(), |other| self.agents[other].clone()),
+            agent: self.name(told.agent),
+            other: told.other.map_or(String::new(), |other| self.name(other)),
             cause: told.cause.clone(),
             shown: told.shown.clone(),
         });

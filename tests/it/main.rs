@@ -43,6 +43,7 @@ mod robust;
 mod chains;
 mod windows;
 mod aggregates;
+mod lives;
 mod imports;
 mod tables;
 mod hierarchies;

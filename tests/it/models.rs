@@ -3,6 +3,7 @@
 mod rectifier;
 mod stick_slip;
 mod aircraft;
+mod sector;
 mod genetic_switch;
 mod relay_clock;
 mod navigation;

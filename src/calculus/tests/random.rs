@@ -74,6 +74,7 @@ pub fn model() -> Model {
         links: Vec::new(),
         lets: Vec::new(),
         declared: Vec::new(),
+        initials: Default::default(),
         modes: [root].into_iter().collect(),
         transitions: Vec::new(),
     });

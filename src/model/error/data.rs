@@ -92,6 +92,8 @@ pub(in crate::model) enum SystemError {
     Missing { kind: &'static str, name: String, agent: String, span: Span, declared: Span },
     /// An argument that the agent type has no place for.
     UnknownArgument { name: String, agent: String, span: Span, similar: Option<String>, is_let: bool },
+    /// An argument for a link that has an expression.
+    FollowsLink { name: String, span: Span },
     /// Two values for one variable.
     GivenTwice { name: String, span: Span, first: Span, help: &'static str },
     /// An index beyond its array.
@@ -123,6 +125,11 @@ impl From<SystemError> for Diagnostic {
                     return unknown.help(format!("`{name}` is a `let`: it follows from other values"));
                 }
                 with_similar(unknown, &similar)
+            }
+            SystemError::FollowsLink { name, span } => {
+                Diagnostic::error("HY0258", format!("`{name}` follows from its own expression"))
+                    .label(span, "given here all the same")
+                    .help("leave it out, or declare the link without an expression")
             }
             SystemError::GivenTwice { name, span, first, help } => {
                 Diagnostic::error("HY0268", format!("`{name}` is given twice"))

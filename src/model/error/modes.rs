@@ -128,6 +128,10 @@ pub(in crate::model) enum ActionError {
     WhoseVariable { name: String, span: Span, participants: Option<[String; 2]> },
     /// `else if` without end.
     TooManyBranches { span: Span, most: usize },
+    /// `create` of an array, or of the rows of a file.
+    CreatesMany { span: Span, what: &'static str },
+    /// `destroy` of something else.
+    DestroysNoAgent { span: Span, found: String },
 }
 
 impl From<ActionError> for Diagnostic {
@@ -168,6 +172,16 @@ impl From<ActionError> for Diagnostic {
                 Diagnostic::error("HY0295", format!("an `if` has at most {most} branches"))
                     .label(span, "more than that")
                     .help("split it into several")
+            }
+            ActionError::CreatesMany { span, what } => {
+                Diagnostic::error("HY0256", "an action creates one agent at a time")
+                    .label(span, format!("{what} here"))
+                    .help("write one `create` for each, or let a transition fire as often as it is needed")
+            }
+            ActionError::DestroysNoAgent { span, found } => {
+                Diagnostic::error("HY0257", "only an agent can be destroyed")
+                    .label(span, format!("this is {found}"))
+                    .help("write `destroy self`, or the name of a link or of an agent that is bound here")
             }
         }
     }

@@ -36,6 +36,9 @@ fn starts(model: &Model) -> Vec<Vec<ModeId>> {
             known.push(agent.mode);
         }
     }
+    for create in model.creations() {
+        starts[create.ty.index()].push(create.mode);
+    }
     for interaction in model.interactions.iter() {
         for transition in &interaction.transitions {
             gotos(&transition.actions, &interaction.types, &mut starts);
@@ -52,7 +55,7 @@ fn gotos(list: &[Action], types: &[TypeId; 2], starts: &mut [Vec<ModeId>]) {
                 gotos(then, types, starts);
                 gotos(otherwise, types, starts);
             }
-            Action::Assign { .. } | Action::Stop { .. } => {}
+            Action::Assign { .. } | Action::Stop { .. } | Action::Create(_) | Action::Destroy { .. } => {}
         }
     }
 }

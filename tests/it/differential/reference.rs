@@ -556,7 +556,9 @@ fn collect(
                 }
             }
             Action::Goto { .. } => {}
-            Action::Stop { .. } => panic!("the generator writes no stop"),
+            Action::Stop { .. } | Action::Create(_) | Action::Destroy { .. } => {
+                panic!("the generator writes none of these")
+            }
         }
     }
 }

@@ -10,7 +10,7 @@ agent Car(v: real) {
     initial mode Fast { }
     rate 0.1 -> Go
     on braking -> Go.history
-    when x > 1 { emit braking create Car(v = 1) destroy self x ~ Normal(0, 1) }
+    when x > 1 { emit braking x ~ Normal(0, 1) }
     when exists o in cars: o.x > 1 -> Go
   }
 }

@@ -2,6 +2,7 @@
 //!
 //! What a test expects follows from the reference by hand; flows are polynomials where only events matter.
 
+mod rule_01_links;
 mod rule_01_state;
 mod rule_02_arming;
 mod rule_03_instant;
@@ -12,6 +13,7 @@ mod rule_05_writing;
 mod rule_06_start;
 mod rule_07_reset;
 mod rule_08_claims;
+mod rule_10_lives;
 mod rule_11_time;
 mod rule_12_end;
 mod rule_13_coupling;
