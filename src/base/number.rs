@@ -67,7 +67,10 @@ mod tests {
             awkward.extend([f64::from_bits(bits), (bits >> 11) as f64 / 1e12, (bits >> 40) as f64 / 1000.0]);
         }
         for value in awkward {
-            assert_eq!(number_text(value), slowly(value), "{:x}", value.to_bits());
+            let (quick, slow) = (number_text(value), slowly(value));
+            // of two texts with as few digits, equally near, the libraries may choose differently
+            let is_tie = quick.len() == slow.len() && quick.parse() == Ok(value);
+            assert!(quick == slow || is_tie, "{quick} is not {slow}: {:x}", value.to_bits());
             let (mut bytes, mut text) = (vec![b'='], String::from("="));
             append_number(&mut bytes, value);
             write_number(&mut text, value);
