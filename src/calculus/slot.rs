@@ -23,7 +23,7 @@ pub enum Slot {
     },
     /// The value of an aggregate.
     Fold {
-        /// Its number in [`Frame::folds`].
+        /// Its number in the folds of its frame.
         number: usize,
         /// The type over which it goes.
         ty: usize,
