@@ -133,7 +133,8 @@ addEventListener("load", () => setTimeout(async () => {
 </script>
 </body>"##;
 
-/// Before all else: what goes wrong is noted.
+/// Before all else: what goes wrong is noted. Frames come by the clock, which the browser's virtual time moves: its own frames
+/// come by real time, and there may be none of them before virtual time has passed.
 const LISTEN: &str = r#"<head>
 <script>
 const errors = [];
@@ -141,6 +142,7 @@ addEventListener("error", event => errors.push(String(event.message)));
 addEventListener("unhandledrejection", event => errors.push(String(event.reason)));
 addEventListener("securitypolicyviolation", event => errors.push("refused: " + event.blockedURI));
 console.error = (...words) => errors.push(words.join(" "));
+window.requestAnimationFrame = frame => setTimeout(() => frame(performance.now()), 16);
 </script>"#;
 
 fn browser() -> Option<String> {
