@@ -1,17 +1,27 @@
 //! What is asked of a system in more than one place: its lists of actions, and who is made and removed by them.
 
-use crate::calculus::system::{ActionList, ActionStep, AgentSystem, Birth, FunctionId, Source, System};
+use crate::calculus::system::{
+    ActionList, ActionStep, AgentSystem, Birth, FunctionId, InteractionSystem, Source, System,
+};
 
 impl System {
-    /// All lists of actions of agents, with their types; then those of interactions.
+    /// All lists of actions: those of agents, by their types, then those of interactions.
     pub fn action_lists(&self) -> impl Iterator<Item = &ActionList> {
-        let of_types = self.types.iter().flat_map(|ty| {
-            let modes = ty.modes.iter().flat_map(|mode| [&mode.entry, &mode.exit]);
-            modes.chain(ty.transitions.iter().map(|transition| &transition.actions))
-        });
-        let pairs = self.interactions.iter().flat_map(|interaction| &interaction.transitions);
-        of_types.chain(pairs.map(|pair| &pair.transition.actions))
+        action_lists(&self.types, &self.interactions)
     }
+}
+
+/// All lists of actions: those of agents, by their types, then those of interactions.
+pub fn action_lists<'s>(
+    types: &'s [AgentSystem],
+    interactions: &'s [InteractionSystem],
+) -> impl Iterator<Item = &'s ActionList> {
+    let of_types = types.iter().flat_map(|ty| {
+        let modes = ty.modes.iter().flat_map(|mode| [&mode.entry, &mode.exit]);
+        modes.chain(ty.transitions.iter().map(|transition| &transition.actions))
+    });
+    let pairs = interactions.iter().flat_map(|interaction| &interaction.transitions);
+    of_types.chain(pairs.map(|pair| &pair.transition.actions))
 }
 
 impl ActionList {

@@ -13,7 +13,7 @@ mod range;
 mod layout;
 mod slot;
 pub mod system;
-mod access;
+pub mod access;
 mod simplify;
 pub mod evaluate;
 pub(crate) mod derive;

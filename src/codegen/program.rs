@@ -1,6 +1,7 @@
 //! The product of this floor: a program that runs. The structure of the system with a kernel for every function of it.
 
 use crate::base::Arena;
+use crate::calculus::access::action_lists;
 use crate::calculus::graph::Graph;
 use crate::calculus::system::Function;
 pub use crate::calculus::system::FunctionId;
@@ -57,12 +58,7 @@ pub struct Cost {
 impl Program {
     /// All lists of actions.
     pub fn action_lists(&self) -> impl Iterator<Item = &ActionList> {
-        let of_types = self.types.iter().flat_map(|ty| {
-            let modes = ty.modes.iter().flat_map(|mode| [&mode.entry, &mode.exit]);
-            modes.chain(ty.transitions.iter().map(|transition| &transition.actions))
-        });
-        let pairs = self.interactions.iter().flat_map(|interaction| &interaction.transitions);
-        of_types.chain(pairs.map(|pair| &pair.transition.actions))
+        action_lists(&self.types, &self.interactions)
     }
 
     /// The kernel of a function.

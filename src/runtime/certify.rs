@@ -187,7 +187,7 @@ impl Engine<'_, '_> {
             let groups = &self.groups.groups;
             let bound =
                 self.enclosures.value_range(&self.agents, groups, (atom, slots, folds), from, horizon);
-            if bound.is_some_and(|bound| if truth { bound.hi < 0.0 } else { bound.lo > 0.0 }) {
+            if bound.is_some_and(|bound| self.guards.atoms[index].is_kept_by(bound)) {
                 let state = &mut self.guards.atoms[index];
                 (state.stride, state.backoff) = (2.0 * horizon, 0);
                 return Some((from + horizon).min(self.time_end));

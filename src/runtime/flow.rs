@@ -59,23 +59,15 @@ impl<'a, 'p> GroupFlow<'a, 'p> {
 
     /// Finds the states of the leaders at `t`.
     fn look_at(&mut self, t: f64) {
-        let mut first = 0;
-        for &leader in self.leaders {
-            let n = self.agents.agents[leader].states.len();
-            self.agents.states_at(leader, t, &mut self.led[first..first + n]);
-            first += n;
-        }
+        let Self { agents, leaders, led, .. } = self;
+        of_each(agents, leaders, led, &|leader, states| agents.states_at(leader, t, states));
     }
 
     /// Finds states and rates of the leaders at `t`.
     fn look_at_rates(&mut self, t: f64) {
         self.look_at(t);
-        let mut first = 0;
-        for &leader in self.leaders {
-            let n = self.agents.agents[leader].states.len();
-            self.agents.rates_at(leader, t, &mut self.led_rates[first..first + n]);
-            first += n;
-        }
+        let Self { agents, leaders, led_rates, .. } = self;
+        of_each(agents, leaders, led_rates, &|leader, rates| agents.rates_at(leader, t, rates));
     }
 }
 
@@ -289,4 +281,14 @@ fn views<'a>(agents: &'a Agents<'_>, slots: &Slots, absent: &'a [f64], x: &'a [f
             AgentView { states, rates: &[], accelerations: &[], aux: &other.aux }
         })
         .collect()
+}
+
+/// Fills in the row of some agents' states or rates, one agent after the other.
+fn of_each(agents: &Agents<'_>, numbers: &[usize], row: &mut [f64], fill: &dyn Fn(usize, &mut [f64])) {
+    let mut rest = row;
+    for &number in numbers {
+        let (own, others) = rest.split_at_mut(agents.agents[number].states.len());
+        fill(number, own);
+        rest = others;
+    }
 }

@@ -5,12 +5,11 @@
 
 use smallvec::SmallVec;
 
-use crate::codegen::kernel::AgentBox;
 use crate::codegen::program::FunctionId;
 use crate::math::Interval;
 use crate::runtime::engine::Engine;
 use crate::runtime::population::{ABSENT, Slots};
-use crate::runtime::present::Boxes;
+use crate::runtime::sleep::StateBoxes;
 
 /// So many pieces of a window are looked at.
 const PIECES_MAX: usize = 24;
@@ -23,15 +22,14 @@ impl Engine<'_, '_> {
             return false;
         }
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
-        let state = &self.guards.atoms[index];
-        let truth = state.truth;
+        let state = self.guards.atoms[index];
         let mut pieces: SmallVec<[(f64, f64); 8]> = SmallVec::new();
         pieces.push((state.certified, until));
         let mut n_pieces = 0;
         while let Some((from, to)) = pieces.pop() {
             n_pieces += 1;
             let Some(bound) = self.range_by_tracks(atom.value, &slots, (from, to)) else { return false };
-            if if truth { bound.hi < 0.0 } else { bound.lo > 0.0 } {
+            if state.is_kept_by(bound) {
                 continue;
             }
             let middle = 0.5 * (from + to);
@@ -45,41 +43,15 @@ impl Engine<'_, '_> {
     }
 
     /// Bounds of a function of states over [from, to]; none if it reads an agent whose way there is not known.
-    fn range_by_tracks(
-        &mut self,
-        function: FunctionId,
-        slots: &Slots,
-        (from, to): (f64, f64),
-    ) -> Option<Interval> {
-        let kernel = self.program.kernel(function);
+    fn range_by_tracks(&mut self, function: FunctionId, slots: &Slots, span: (f64, f64)) -> Option<Interval> {
         let n_states =
             |&agent: &usize| if agent == ABSENT { 0 } else { self.agents.agents[agent].states.len() };
-        let firsts: SmallVec<[usize; 4]> = slots
-            .iter()
-            .scan(0, |next, agent| {
-                let first = *next;
-                *next += n_states(agent);
-                Some(first)
-            })
-            .collect();
-        let total = slots.iter().map(n_states).sum();
-        let mut states: SmallVec<[Interval; 16]> = SmallVec::from_elem(Interval::WHOLE, total);
-        for &(slot, state) in &kernel.reads().states {
-            states[firsts[slot] + state] = self.range_of_state(slots[slot], state, (from, to))?;
+        let unknown = |agent: &usize| SmallVec::from_elem(Interval::WHOLE, n_states(agent));
+        let mut states: StateBoxes = slots.iter().map(unknown).collect();
+        for &(slot, state) in &self.program.kernel(function).reads().states {
+            states[slot][state] = self.range_of_state(slots[slot], state, span)?;
         }
-        let boxes: Boxes<'_> = slots
-            .iter()
-            .zip(&firsts)
-            .map(|(agent, &first)| {
-                let aux: &[f64] = if *agent == ABSENT { &[] } else { &self.agents.agents[*agent].aux };
-                AgentBox { states: &states[first..][..n_states(agent)], rates: &[], accelerations: &[], aux }
-            })
-            .collect();
-        let mut out = [Interval::WHOLE];
-        self.reaches.ranges += 1;
-        self.reaches.operations += 2 * kernel.operations();
-        kernel.range(&boxes, Interval { lo: from, hi: to }, &mut self.registers, &mut out);
-        Some(out[0])
+        Some(self.range_over(function, slots, &states, span))
     }
 
     /// Bounds of a state of an agent over [from, to], by its last segment and its track.

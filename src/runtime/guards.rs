@@ -7,6 +7,7 @@
 use smallvec::SmallVec;
 
 use crate::codegen::program::{Atom, Quantified, Range, Relation};
+use crate::math::Interval;
 use crate::runtime::definition::{AtomShape, Definition, definitions};
 pub use crate::runtime::definition::{Listing, Origin};
 use crate::runtime::population::{ABSENT, Agents, Slots};
@@ -89,6 +90,11 @@ pub struct Leap {
 }
 
 impl AtomState {
+    /// Whether its truth does not change as long as g is within these bounds.
+    pub fn is_kept_by(&self, g: Interval) -> bool {
+        if self.truth { g.hi < 0.0 } else { g.lo > 0.0 }
+    }
+
     /// Of a seat that nobody has.
     pub fn unread(instance: u32) -> Self {
         Self { left_out: true, ..Self::new(instance) }

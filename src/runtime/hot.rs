@@ -20,32 +20,44 @@ pub struct Outlook {
 impl Engine<'_, '_> {
     /// Divides the agents for the window from the present to `until`, and advances the cold ones.
     pub fn open_window(&mut self, until: f64) -> Outlook {
-        let from = self.present.time;
         self.agents.cold.clear_tracks();
         let doubtful = self.look_ahead(until);
-        let changing = self.changing();
-        let hot = std::mem::take(&mut self.hot);
-        for agent in hot {
-            if changing.binary_search(&agent).is_ok() || !self.freeze(agent) {
-                self.hot.push(agent);
-            }
-        }
-        for &agent in &changing {
-            self.thaw(agent);
-        }
+        self.freeze_all();
         let mut doubted = Vec::new();
         for due in &doubtful {
             self.add_read(due.number as usize, &mut doubted);
         }
-        for &agent in &doubted {
-            self.agents.cold.want_track(agent);
+        doubted.into_iter().for_each(|agent| self.agents.cold.want_track(agent));
+        self.advance_cold(until);
+        self.follow_doubts(doubtful, until);
+        self.has_thawed = false;
+        let rows = self.hot.iter().map(|&agent| &self.agents.agents[agent]);
+        let n_hot = rows.filter(|row| self.agents.cold.may_be(row.ty, row.mode)).count();
+        Outlook { n_hot, n_tracked: self.agents.cold.n_tracked() }
+    }
+
+    /// Has all hot agents run ahead but those whose flow does not let them, and those that comparisons read which will change.
+    fn freeze_all(&mut self) {
+        let changing = self.changing();
+        for agent in std::mem::take(&mut self.hot) {
+            if changing.binary_search(&agent).is_ok() || !self.freeze(agent) {
+                self.hot.push(agent);
+            }
         }
+        changing.into_iter().for_each(|agent| self.thaw(agent));
+    }
+
+    /// Advances the cold agents to `until`; those that can go no further are brought back.
+    fn advance_cold(&mut self, until: f64) {
         let mut refused = Vec::new();
+        let from = self.present.time;
         let steps = self.agents.cold.advance(from, until, &mut |agent| refused.push(agent));
         self.count_cold(&steps);
-        for agent in refused {
-            self.thaw(agent);
-        }
+        refused.into_iter().for_each(|agent| self.thaw(agent));
+    }
+
+    /// Certifies doubtful comparisons by the tracks of their agents; brings back the agents of those that it does not.
+    fn follow_doubts(&mut self, doubtful: Vec<Due>, until: f64) {
         let mut needed = Vec::new();
         for due in doubtful {
             let index = due.number as usize;
@@ -56,13 +68,7 @@ impl Engine<'_, '_> {
                 self.queues.uncertified.push(due);
             }
         }
-        for agent in needed {
-            self.thaw(agent);
-        }
-        self.has_thawed = false;
-        let rows = self.hot.iter().map(|&agent| &self.agents.agents[agent]);
-        let n_hot = rows.filter(|row| self.agents.cold.may_be(row.ty, row.mode)).count();
-        Outlook { n_hot, n_tracked: self.agents.cold.n_tracked() }
+        needed.into_iter().for_each(|agent| self.thaw(agent));
     }
 
     /// Has comparisons sleep beyond `until`; returns those that do not.

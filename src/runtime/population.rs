@@ -55,6 +55,14 @@ pub struct Agent {
     pub ahead: Ahead,
 }
 
+impl Agent {
+    /// The trajectory that covers `t`: its last step, or one ahead of that.
+    fn way(&self, t: f64) -> &Segment {
+        let beyond = if self.segment.end < t { self.ahead.covering(t) } else { None };
+        beyond.map_or(&self.segment, |way| &way.segment)
+    }
+}
+
 /// All agents with their links.
 pub struct Agents<'p> {
     /// The program they follow.
@@ -150,17 +158,13 @@ impl<'p> Agents<'p> {
         if agent.segment.end == t {
             return states.copy_from_slice(&agent.states);
         }
-        let beyond = if agent.segment.end < t { agent.ahead.covering(t) } else { None };
-        beyond.map_or(&agent.segment, |way| &way.segment).states(t, states);
+        agent.way(t).states(t, states);
     }
 
     /// The rates of an agent that is not cold at `t`, by its dense output.
     pub fn rates_at(&self, number: usize, t: f64, rates: &mut [f64]) {
-        let agent = &self.agents[number];
-        let beyond = if agent.segment.end < t { agent.ahead.covering(t) } else { None };
-        let segment = beyond.map_or(&agent.segment, |way| &way.segment);
         let (mut x, mut ddx) = (rates.to_vec(), rates.to_vec());
-        segment.jet(t, &mut x, rates, &mut ddx);
+        self.agents[number].way(t).jet(t, &mut x, rates, &mut ddx);
     }
 
     /// Up to when the way of an agent that is not cold is known, s.

@@ -3,14 +3,17 @@
 use smallvec::SmallVec;
 
 use crate::codegen::kernel::AgentBox;
-use crate::codegen::program::Slot;
+use crate::codegen::program::{FunctionId, Slot};
 use crate::math::Interval;
 use crate::runtime::act::Written;
 use crate::runtime::engine::Engine;
 use crate::runtime::paper::Form;
-use crate::runtime::population::ABSENT;
+use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::{Boxes, Depth, depth_read};
 use crate::runtime::solve::control::Accuracy;
+
+/// For each slot, bounds of the states of the agent in it.
+pub type StateBoxes = SmallVec<[SmallVec<[Interval; 8]>; 2]>;
 
 /// How often at most a shorter time is tried.
 const TRIES: usize = 5;
@@ -91,7 +94,7 @@ impl Engine<'_, '_> {
     /// Up to when a comparison cannot change, if that is certain up to `least` at least.
     fn sleeping_time(&mut self, index: usize, least: f64) -> Option<f64> {
         let state = self.guards.atoms[index];
-        let (from, truth) = (state.certified, state.truth);
+        let from = state.certified;
         let end = if self.time_end.is_finite() { self.time_end } else { least.max(from + 1e6) };
         let least = least.min(end);
         if let Some(until) = self.distant_until(index, from, end).filter(|&until| until >= least) {
@@ -103,7 +106,7 @@ impl Engine<'_, '_> {
                 until = least;
             }
             let bound = self.value_range(index, (from, until));
-            if if truth { bound.hi < 0.0 } else { bound.lo > 0.0 } {
+            if state.is_kept_by(bound) {
                 self.guards.atoms[index].stride = 2.0 * (until - from);
                 return Some(until);
             }
@@ -151,7 +154,7 @@ impl Engine<'_, '_> {
     /// Bounds of a comparison's g over a stretch of time.
     fn value_range(&mut self, index: usize, (from, until): (f64, f64)) -> Interval {
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
-        let mut states: SmallVec<[SmallVec<[Interval; 8]>; 2]> = SmallVec::new();
+        let mut states = StateBoxes::new();
         let (agents, groups) = (&self.agents, &self.groups.groups);
         for (slot, &agent) in slots.iter().enumerate() {
             let mut bounds = SmallVec::new();
@@ -161,16 +164,28 @@ impl Engine<'_, '_> {
             }
             states.push(bounds);
         }
+        self.range_over(atom.value, &slots, &states, (from, until))
+    }
+
+    /// Bounds of a function of states, given bounds of these, over a stretch of time.
+    pub fn range_over(
+        &mut self,
+        function: FunctionId,
+        slots: &Slots,
+        states: &StateBoxes,
+        (from, until): (f64, f64),
+    ) -> Interval {
+        let agents = &self.agents;
         let boxes: Boxes<'_> = slots
             .iter()
-            .zip(&states)
+            .zip(states)
             .map(|(&agent, states)| {
                 let aux: &[f64] = if agent == ABSENT { &[] } else { &agents.agents[agent].aux };
                 AgentBox { states, rates: &[], accelerations: &[], aux }
             })
             .collect();
         let mut out = [Interval::WHOLE];
-        let kernel = self.program.kernel(atom.value);
+        let kernel = self.program.kernel(function);
         self.reaches.ranges += 1;
         self.reaches.operations += 2 * kernel.operations();
         kernel.range(&boxes, Interval { lo: from, hi: until }, &mut self.registers, &mut out);

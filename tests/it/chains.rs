@@ -1,10 +1,7 @@
 //! Chains of followers (rule 13): one whose leader does not read it integrates from the leader's dense output, on its own
 //! clock. What comes out is what one system of equations would say, and the cost of a car does not grow with the chain.
 
-use hyc::runtime::Algorithm;
-use hyc::runtime::paper::Form;
-
-use crate::harness::{Case, Run, near};
+use crate::harness::{Run, all_near, both_forms, near};
 
 /// Cars 0 to n - 1, each of which approaches the one before it: x_k' = x_(k-1) - x_k.
 fn filters(n: usize, rest: &str, until: f64) -> String {
@@ -21,13 +18,8 @@ fn filters(n: usize, rest: &str, until: f64) -> String {
 
 /// By both forms, which must tell the same.
 fn run(text: &str) -> Run {
-    let [fast, plain] =
-        [Form::Fast, Form::Plain].map(|form| Case::new(text).algorithm(Algorithm::Masim(form)).run());
-    assert_eq!(fast.events.len(), plain.events.len(), "{text}");
-    for (one, other) in fast.events.iter().zip(&plain.events) {
-        assert_eq!((&one.transition, &one.agent), (&other.transition, &other.agent));
-        near(one.time, other.time, 1e-9);
-    }
+    let [fast, plain] = both_forms(text);
+    all_near(&fast.event_times(), &plain.event_times(), 1e-9);
     plain
 }
 

@@ -109,15 +109,33 @@ pub fn simulate(text: &str) -> Run {
     Case::new(text).run()
 }
 
+/// The runs of a model by the fast and by the plain form of the engine, which must find the same events.
+#[track_caller]
+pub fn both_forms(text: &str) -> [Run; 2] {
+    let runs = [Form::Fast, Form::Plain].map(|form| Case::new(text).algorithm(Algorithm::Masim(form)).run());
+    assert_eq!(runs[0].log(), runs[1].log(), "the forms differ:\n{text}");
+    runs
+}
+
 /// Runs a model by both forms of the engine, which must find the same events at the same times.
 #[track_caller]
 pub fn simulate_by_both_forms(text: &str) -> Run {
-    let [fast, plain] =
-        [Form::Fast, Form::Plain].map(|form| Case::new(text).algorithm(Algorithm::Masim(form)).run());
-    assert_eq!(fast.log(), plain.log(), "the forms differ:\n{text}");
-    let times = |run: &Run| run.events.iter().map(|event| event.time).collect::<Vec<_>>();
-    all_near(&times(&fast), &times(&plain), 1e-6);
+    let [fast, plain] = both_forms(text);
+    all_near(&fast.event_times(), &plain.event_times(), 1e-6);
     plain
+}
+
+/// The same more closely; who is there at the end, and with which values, must be the same, too.
+#[track_caller]
+pub fn simulate_to_the_end(text: &str) -> Run {
+    let [fast, plain] = both_forms(text);
+    all_near(&fast.event_times(), &plain.event_times(), 1e-8);
+    let names = |run: &Run| run.finals.iter().map(|last| last.agent.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&plain), names(&fast));
+    let values =
+        |run: &Run| run.finals.iter().flat_map(|last| &last.values).map(|(_, x)| *x).collect::<Vec<_>>();
+    all_near(&values(&fast), &values(&plain), 1e-7);
+    fast
 }
 
 /// Runs a model that must be right, and must end in an error.
@@ -501,6 +519,11 @@ impl Observer for Recorder {
 }
 
 impl Run {
+    /// When each event was, s.
+    pub fn event_times(&self) -> Vec<f64> {
+        self.events.iter().map(|event| event.time).collect()
+    }
+
     /// The times at which a transition has fired.
     pub fn times(&self, transition: &str) -> Vec<f64> {
         self.events.iter().filter(|event| event.transition == transition).map(|event| event.time).collect()

@@ -1,27 +1,10 @@
 //! Rules 1, 4, 13 and 14: links that follow from an expression.
 
-use hyc::runtime::Algorithm;
-use hyc::runtime::paper::Form;
-
-use crate::harness::{Case, Run, all_near, near, refused};
-
-/// A run by both forms of the engine, each with both back ends; they must tell the same.
-#[track_caller]
-fn simulate(text: &str) -> Run {
-    let [plain, fast] =
-        [Form::Plain, Form::Fast].map(|form| Case::new(text).algorithm(Algorithm::Masim(form)).run());
-    assert_eq!(plain.log(), fast.log());
-    let times = |run: &Run| run.events.iter().map(|event| event.time).collect::<Vec<_>>();
-    all_near(&times(&fast), &times(&plain), 1e-8);
-    let values =
-        |run: &Run| run.finals.iter().flat_map(|last| &last.values).map(|(_, x)| *x).collect::<Vec<_>>();
-    all_near(&values(&fast), &values(&plain), 1e-7);
-    fast
-}
+use crate::harness::{all_near, near, refused, simulate_to_the_end};
 
 #[test]
 fn rule_01_a_link_follows_the_nearest() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Car(v: real) { state x = 0
            link lead = nearest o in other Car where o.x > x by o.x - x
            flow { x' = v }
@@ -45,7 +28,7 @@ fn rule_01_a_link_follows_the_nearest() {
 
 #[test]
 fn rule_01_of_several_that_are_equally_near_the_lowest_and_it_stays() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Dot { state x = 0  flow { x' = 0 } }
          agent Eye { state y = 3  flow { y' = -1 }  link it = nearest o in Dot by abs(o.x - y)  discrete seen = -1
            look: after 3 { seen := if it then it.x else -2 } }
@@ -60,7 +43,7 @@ fn rule_01_of_several_that_are_equally_near_the_lowest_and_it_stays() {
 
 #[test]
 fn rule_01_a_link_by_if() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Boss(pay: real) { }
          agent Hand(one: Boss, two: Boss) { state x = 0, y = 0
            link boss: Boss = if x < 2 then one else if x < 3 then none else two
@@ -69,7 +52,7 @@ fn rule_01_a_link_by_if() {
          run { until 4 }",
     );
     near(run.value("hand.y"), 2.0 + 5.0, 1e-9);
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Car(k: int) { state x = 0
            link lead: Car = if index >= 1 then cars[index - 1] else none
            flow { x' = if lead then lead.k else -1 } }
@@ -81,7 +64,7 @@ fn rule_01_a_link_by_if() {
 #[test]
 fn rule_04_links_that_the_flow_changed_are_updated_first() {
     // At 2 the link goes from a to b: `go` reads the new one, though the flow makes both true at once.
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Mark(k: real) { state x = 0  flow { x' = 0 } }
          agent Car { state x = 0  flow { x' = 1 }  discrete seen = 0
            link next = nearest o in Mark where o.x > x by o.x - x
@@ -93,7 +76,7 @@ fn rule_04_links_that_the_flow_changed_are_updated_first() {
 
 #[test]
 fn rule_07_a_write_moves_links_at_once() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Car(x0: real) { state x = x0  discrete lane: int = 1, gap = 0
            link lead = nearest o in other Car where o.lane == lane and o.x > x by o.x - x
            flow { x' = 1 }
@@ -108,7 +91,7 @@ fn rule_07_a_write_moves_links_at_once() {
 
 #[test]
 fn rule_13_coupled_flows_regroup_by_link() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Lead(x0: real, v: real) { state x = x0  flow { x' = v } }
          agent Tail { state y = 0
            link lead = nearest o in Lead by abs(o.x - 2)
@@ -121,7 +104,7 @@ fn rule_13_coupled_flows_regroup_by_link() {
 
 #[test]
 fn rule_13_a_chain_of_followers_whose_order_changes() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Car(v: real) { state x = 0, u = v
            link lead = nearest o in other Car where o.x > x by o.x - x
            flow { x' = u  u' = if lead then 0.1*(lead.u - u) else 0.1*(v - u) }
@@ -134,7 +117,7 @@ fn rule_13_a_chain_of_followers_whose_order_changes() {
 
 #[test]
 fn rule_14_who_comes_and_goes_wakes_links() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Dot(k: real) { state x = 0  flow { x' = 0 }  old: after k { destroy self } }
          agent Maker { make: after 1 { create Dot(k = 1, x = 1) } }
          agent Eye { discrete n = 0
@@ -165,7 +148,7 @@ fn rule_14_who_comes_and_goes_wakes_links() {
 
 #[test]
 fn rule_02_a_nearest_of_a_guard_names_its_agent() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Dot(v: real) { state x = 10  flow { x' = -v } }
          agent Eye { state y = 0  flow { y' = 0 }  discrete who = 0, d = 0
            let first = (nearest o in Dot by o.x).x
@@ -229,7 +212,7 @@ fn rule_01_generated_links_are_those_found_by_looking_at_all() {
              system {{ cars = Car[8](k = index + 50*{seed})  ramp = Ramp() }}
              run {{ until 12  record Car.x, Car.lane, Car.v, Car.lead, Car.pal every 0.37 to \"cars.csv\" }}"
         );
-        let run = simulate(&text);
+        let run = simulate_to_the_end(&text);
         let rows = &run.samples[0];
         let number = |name: &str| -> f64 {
             let digits: String = name.chars().filter(char::is_ascii_digit).collect();

@@ -4,23 +4,7 @@ use hyc::runtime::Algorithm;
 use hyc::runtime::limits::Limits;
 use hyc::runtime::paper::Form;
 
-use crate::harness::{Case, Run, all_near, near, refused, simulate_error, words};
-
-/// A run by both forms of the engine, each with both back ends; they must tell the same.
-#[track_caller]
-fn simulate(text: &str) -> Run {
-    let [plain, fast] =
-        [Form::Plain, Form::Fast].map(|form| Case::new(text).algorithm(Algorithm::Masim(form)).run());
-    assert_eq!(plain.log(), fast.log());
-    let times = |run: &Run| run.events.iter().map(|event| event.time).collect::<Vec<_>>();
-    all_near(&times(&fast), &times(&plain), 1e-8);
-    let names = |run: &Run| run.finals.iter().map(|last| last.agent.clone()).collect::<Vec<_>>();
-    assert_eq!(names(&plain), names(&fast));
-    let values =
-        |run: &Run| run.finals.iter().flat_map(|last| &last.values).map(|(_, x)| *x).collect::<Vec<_>>();
-    all_near(&values(&fast), &values(&plain), 1e-7);
-    fast
-}
+use crate::harness::{Case, Run, all_near, near, refused, simulate_error, simulate_to_the_end, words};
 
 fn living(run: &Run) -> Vec<&str> {
     run.finals.iter().map(|last| last.agent.as_str()).collect()
@@ -28,7 +12,7 @@ fn living(run: &Run) -> Vec<&str> {
 
 #[test]
 fn rule_10_numbers_name_agents_and_order_them() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Dot(k: real) { state x = k  flow { x' = 1 }  old: when x >= k + 1.5 { destroy self } }
          agent Maker { discrete n = 0  make: every 1 { create Dot(k = 10*n)  n := n + 1 } }
          system { maker = Maker()  first = Dot(k = 0) }  run { until 5 }",
@@ -56,7 +40,7 @@ fn rule_10_numbers_name_agents_and_order_them() {
 
 #[test]
 fn rule_10_at_the_end_of_the_micro_step() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Dot(k: real) { discrete seen = k }
          agent Maker { state x = 0  discrete before = -1, later = -1  flow { x' = 1 }
            make: when x >= 2 { x := 7  create Dot(k = x)  before := count d in Dot }
@@ -71,7 +55,7 @@ fn rule_10_at_the_end_of_the_micro_step() {
 
 #[test]
 fn rule_10_what_is_declared_and_what_is_given() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Dot(a: real, b: real [km] = 2, big: bool = a > 1) {
            state x = y + a, y: real [m] = b
            discrete n: int = 3, w = x*y
@@ -87,7 +71,7 @@ fn rule_10_what_is_declared_and_what_is_given() {
 #[test]
 fn rule_10_entry_actions_and_guards_at_creation_as_at_the_start() {
     // On its boundary and moving out: at creation nothing is held, so it fires; so does what is true on entry.
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Dot { state x = 0  discrete n = 0
            edge: when x <= 0 { n := n + 1 }
            initial mode A { flow { x' = 1 } }
@@ -112,7 +96,7 @@ fn rule_10_an_invariant_of_an_agent_that_is_created() {
     );
     assert_eq!((found.code, run.time), ("HY0501", 1.0));
     assert!(words(&[found]).contains("Dot#1"));
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Dot { state x = -1  flow { x' = 1 }  invariant x >= 0  mend: when x < 0 { x := 0 } }
          agent Maker { make: after 1 { create Dot() } }
          system { maker = Maker() }  run { until 2 }",
@@ -122,7 +106,7 @@ fn rule_10_an_invariant_of_an_agent_that_is_created() {
 
 #[test]
 fn rule_10_timers_count_from_birth() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Dot { beat: every 0.5 { }  late: after 1.25 { destroy self } }
          agent Maker { make: after 1 { create Dot() } }
          system { maker = Maker() }  run { until 4 }",
@@ -133,7 +117,7 @@ fn rule_10_timers_count_from_birth() {
 
 #[test]
 fn rule_10_entry_actions_create_in_their_turn() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Leaf { }
          agent Twig(n: int) { discrete left: int = n
            entry { if n >= 2 { create Twig(n = n - 1) } else { create Leaf() } } }
@@ -146,7 +130,7 @@ fn rule_10_entry_actions_create_in_their_turn() {
 
 #[test]
 fn rule_10_who_is_destroyed_leaves_all_sets() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Dot(v: real) { state x = 0  flow { x' = v }  far: when x >= 3 { destroy self } }
          agent Watch { discrete n = 0, least = 0
            few: when (count d in Dot) <= 2 { n := count d in Dot }
@@ -175,7 +159,7 @@ fn rule_10_who_is_destroyed_leaves_all_sets() {
 #[test]
 fn rule_10_a_seat_that_is_used_again_is_nobody_else_s() {
     // One flag for the `exists`: each newcomer that gets to 1 fires it, because the one before is gone by then.
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Dot { state x = 0  flow { x' = 1 }  old: when x >= 2 { destroy self } }
          agent Maker { discrete n: int = 0
            make: every 3 { create Dot() }
@@ -197,7 +181,7 @@ fn rule_10_a_seat_that_is_used_again_is_nobody_else_s() {
 
 #[test]
 fn rule_10_quantifiers_within_quantifiers_over_those_who_come_and_go() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Dot(x0: real, v: real) { state x = x0  flow { x' = v }  far: when x >= 12 { destroy self } }
          agent Watch { discrete n: int = 0
            pair: when exists a in Dot: exists b in Dot where b.v > a.v: a.x - b.x <= 0.5 and b.x <= a.x { n := n + 1 } }
@@ -213,7 +197,7 @@ fn rule_10_quantifiers_within_quantifiers_over_those_who_come_and_go() {
 
 #[test]
 fn rule_10_links_to_the_dead_are_none() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Lead { state x = 0  flow { x' = 1 }  far: when x >= 1.9 { destroy self } }
          agent Tail { link lead: Lead  state y = 0  discrete alone: bool = false
            flow { y' = if lead then lead.x else 0 }
@@ -228,7 +212,7 @@ fn rule_10_links_to_the_dead_are_none() {
 
 #[test]
 fn rule_10_a_link_given_at_birth_couples() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Lead { state x = 0  flow { x' = 1 }
            first: after 1 { create Tail(lead = self) }
            second: after 2 { create Tail(lead = self, y = 5) } }
@@ -251,7 +235,7 @@ fn rule_10_destroying_what_a_living_agent_holds_is_an_error() {
     let told = words(&[found]);
     assert!(told.contains("`lead` is destroyed, and is `lead` of `tail`"), "{told}");
     // Both at once is none.
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Lead { state x = 0  flow { x' = 1 }  far: when x >= 2 { destroy self } }
          agent Tail(lead: Lead) { discrete n = 0  end: when lead.x >= 2 { destroy self } }
          system { lead = Lead()  tail = Tail(lead = lead) }  run { until 3 }",
@@ -261,7 +245,7 @@ fn rule_10_destroying_what_a_living_agent_holds_is_an_error() {
 
 #[test]
 fn rule_10_an_interaction_destroys_and_creates() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Drop(m0: real, v0: real) { state x = 0  discrete m = m0, v = v0  flow { x' = v }
            split: when m >= 4 { create Drop(m0 = m/2, v0 = v - 1, x = x)  m := m/2  v := v + 1 } }
          interaction Merge(a: Drop, b: Drop) {
@@ -278,7 +262,7 @@ fn rule_10_an_interaction_destroys_and_creates() {
 
 #[test]
 fn rule_10_who_is_destroyed_twice_is_destroyed_once() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Dot { state x = 0  flow { x' = 1 }  end: when x >= 1 { destroy self } }
          agent Hand { link dot: Dot  take: when dot.x >= 1 { destroy dot } }
          system { dot = Dot()  hand = Hand(dot = dot) }  run { until 2 }",
@@ -296,7 +280,8 @@ fn rule_10_draws_belong_to_the_creator_and_its_count() {
              system {{ {others} ramp = Ramp(p = 1) }}  run {{ until 3.5  seed 7 }}"
         )
     };
-    let (alone, among) = (simulate(&model("")), simulate(&model("second = Ramp(p = 0.7)")));
+    let (alone, among) =
+        (simulate_to_the_end(&model("")), simulate_to_the_end(&model("second = Ramp(p = 0.7)")));
     let of = |run: &Run, numbers: &[usize]| -> Vec<f64> {
         numbers.iter().flat_map(|n| [run.value(&format!("Car#{n}.w"))]).collect()
     };
@@ -310,7 +295,7 @@ fn rule_10_draws_belong_to_the_creator_and_its_count() {
 
 #[test]
 fn rule_10_records_have_rows_while_an_agent_lives() {
-    let run = simulate(
+    let run = simulate_to_the_end(
         "agent Dot { state x = 0  flow { x' = 1 }  old: when x >= 1.9 { destroy self } }
          agent Maker { make: every 1.5 { create Dot() } }
          system { maker = Maker()  dot = Dot() }
