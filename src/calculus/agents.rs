@@ -6,12 +6,12 @@ use crate::calculus::condition::Sense;
 use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
 use crate::calculus::flow;
-use crate::calculus::frame::Scope;
+use crate::calculus::frame::{Scope, Value};
 use crate::calculus::guard;
 use crate::calculus::symmetry;
 use crate::calculus::system::{
     ActionList, AgentSystem, ClaimKind, ClaimSystem, Column, FunctionId, InteractionSystem, LetSystem,
-    LetValue, ModeSystem, PairTransition, TransitionSystem, Trigger,
+    LetValue, ModeSystem, PairTransition, Sender, TransitionSystem, Trigger,
 };
 use crate::model::ir::{
     self, Action, Claim, ExprId, Interaction, Let, Mode, ModeId, Transition, Type, TypeId,
@@ -184,17 +184,33 @@ fn trigger(
     let guard = |draft: &mut Draft, scope: &mut Scope, guard: ExprId| {
         guard::guard(draft, scope, guard, Sense::Positive, &name)
     };
-    Ok(match *trigger {
-        ir::Trigger::When(condition) => Trigger::When(guard(draft, scope, condition)?),
-        ir::Trigger::After(delay, condition) => Trigger::After {
+    Ok(match trigger {
+        &ir::Trigger::When(condition) => Trigger::When(guard(draft, scope, condition)?),
+        ir::Trigger::On { events, from, guard: condition } => Trigger::On {
+            events: events.iter().map(|&(ty, event)| (ty.index(), event)).collect(),
+            from: from.map_or(Ok(Sender::Others), |from| sender(draft, scope, from))?,
+            guard: condition.map(|condition| guard(draft, scope, condition)).transpose()?,
+        },
+        &ir::Trigger::After(delay, condition) => Trigger::After {
             delay: number(draft, scope, delay, &format!("{label} delay"))?,
             guard: condition.map(|condition| guard(draft, scope, condition)).transpose()?,
         },
-        ir::Trigger::Every(period, condition) => Trigger::Every {
+        &ir::Trigger::Every(period, condition) => Trigger::Every {
             period: number(draft, scope, period, &format!("{label} period"))?,
             guard: condition.map(|condition| guard(draft, scope, condition)).transpose()?,
         },
     })
+}
+
+/// Whom an `on` hears: the agent that an expression names, which has a slot.
+fn sender(draft: &mut Draft, scope: &mut Scope, from: ExprId) -> Result<Sender, Error> {
+    let span = draft.model.exprs[from].span;
+    let agent = match aggregate::value(draft, scope, Scope::TOP, from)? {
+        Value::Agent(agent) => agent,
+        Value::Number(_) | Value::Delayed(..) => unreachable!("the model is typed"),
+    };
+    let slot = scope.slot(draft.model, agent, span)?;
+    Ok(Sender::Slot(slot.expect("the model lets no message come from `none`")))
 }
 
 fn number(draft: &mut Draft, scope: &mut Scope, expr: ExprId, name: &str) -> Result<FunctionId, Error> {

@@ -5,8 +5,10 @@ use rustc_hash::FxHashMap;
 use crate::base::{Arena, Diagnostic, Span};
 use crate::calculus::error::Error;
 use crate::calculus::graph::{Graph, NodeId};
-use crate::calculus::system::{AgentSystem, Column, Function, FunctionId, InteractionSystem, Layout, System};
-use crate::model::ir::{AgentType, Model, Type, Variable};
+use crate::calculus::system::{
+    AgentSystem, Column, EventSystem, Function, FunctionId, InteractionSystem, Layout, System,
+};
+use crate::model::ir::{AgentType, Event, Model, Trigger, Type, Variable};
 
 /// See the head of this file.
 pub struct Draft<'m> {
@@ -26,7 +28,7 @@ pub struct Draft<'m> {
 impl<'m> Draft<'m> {
     /// The columns of all types, and nothing else yet.
     pub fn new(model: &'m Model) -> Self {
-        let types = model.types.iter().map(columns).collect();
+        let types = model.types.iter().map(|ty| columns(model, ty)).collect();
         let (graph, functions) = (Graph::default(), Arena::new());
         Self { model, graph, functions, known: FxHashMap::default(), types, diagnostics: Vec::new() }
     }
@@ -84,13 +86,31 @@ impl<'m> Draft<'m> {
         })
     }
 
+    /// The stream of an agent's random numbers that has this name, which is made if there is none yet.
+    pub fn stream(&mut self, ty: usize, name: &str) -> usize {
+        let streams = &mut self.types[ty].streams;
+        streams.iter().position(|known| known == name).unwrap_or_else(|| {
+            streams.push(name.to_owned());
+            streams.len() - 1
+        })
+    }
+
     /// The columns of an agent type.
     pub fn layout(&self, ty: usize) -> &Layout {
         &self.types[ty].layout
     }
 }
 
-fn columns(ty: &AgentType) -> AgentSystem {
+/// How many values the event with the most carries of those that a type hears.
+fn n_received(model: &Model, ty: &AgentType) -> usize {
+    let heard = ty.transitions.iter().flat_map(|transition| match &transition.trigger {
+        Trigger::On { events, .. } => events.as_slice(),
+        Trigger::When(_) | Trigger::After(..) | Trigger::Every(..) => &[],
+    });
+    heard.map(|&(ty, event)| model.types[ty].events[event].params.len()).max().unwrap_or(0)
+}
+
+fn columns(model: &Model, ty: &AgentType) -> AgentSystem {
     let column = |v: &Variable| Column { name: v.name.clone(), scale: v.scale, boolean: v.ty == Type::Bool };
     AgentSystem {
         name: ty.name.clone(),
@@ -99,15 +119,23 @@ fn columns(ty: &AgentType) -> AgentSystem {
             n_params: ty.params.len(),
             n_discretes: ty.discretes.len(),
             n_links: ty.links.len(),
+            n_received: n_received(model, ty),
             n_locks: 0,
         },
         states: ty.states.iter().map(column).collect(),
         params: ty.params.iter().map(column).collect(),
         discretes: ty.discretes.iter().map(column).collect(),
         links: ty.links.iter().map(|link| link.name.clone()).collect(),
+        events: ty.events.iter().map(event).collect(),
+        streams: Vec::new(),
         lets: Vec::new(),
         declared: ty.declared.clone(),
         modes: Vec::new(),
         transitions: Vec::new(),
     }
+}
+
+fn event(event: &Event) -> EventSystem {
+    let params = event.params.iter().map(|param| param.name.clone()).collect();
+    EventSystem { name: event.name.clone(), params }
 }

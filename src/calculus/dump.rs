@@ -8,7 +8,8 @@ use crate::calculus::graph::NodeId;
 use crate::calculus::print::{self, Names, Sheet};
 use crate::calculus::system::{
     ActionStep, AgentSystem, Atom, ClaimKind, Column, Condition, Flow, Frame, FunctionId, Guard, KinkKind,
-    LetValue, ModeSystem, Near, PairTransition, Quantified, System, Target, TransitionSystem, Trigger,
+    LetValue, ModeSystem, Near, PairTransition, Quantified, Sender, System, Target, TransitionSystem,
+    Trigger,
 };
 
 /// The whole system as text; the same for the same system.
@@ -174,6 +175,7 @@ fn transition(
         Trigger::When(guard) => ("when", None, Some(guard)),
         Trigger::After { delay, guard } => ("after", Some(*delay), guard.as_ref()),
         Trigger::Every { period, guard } => ("every", Some(*period), guard.as_ref()),
+        Trigger::On { guard, .. } => ("on", None, guard.as_ref()),
     };
     block.functions.extend(time.iter().chain(&transition.priority));
     if let Some(guard) = guard {
@@ -185,6 +187,9 @@ fn transition(
     block.line(2, format!("{head}{target}"));
     if let Some(time) = time {
         block.line(4, format!("{word} {}", block.value(&sheet, time)));
+    }
+    if let Trigger::On { events, from, .. } = &transition.trigger {
+        block.line(4, format!("on {}{}", heard(system, events), sender(&transition.frame, *from)));
     }
     if let Some(guard) = guard {
         block.line(4, format!("when {}", block.condition(&sheet, guard, &guard.condition, 0)));
@@ -199,6 +204,22 @@ fn transition(
     }
     block.steps(&sheet, &transition.actions.steps, 4);
     block.close(&sheet, out);
+}
+
+/// `Car.braking, Bus.braking`
+fn heard(system: &System, events: &[(usize, usize)]) -> String {
+    let names = events.iter().map(|&(ty, event)| {
+        let ty = &system.types[ty];
+        format!("{}.{}", ty.name, ty.events[event].name)
+    });
+    names.collect::<Vec<_>>().join(", ")
+}
+
+fn sender(frame: &Frame, from: Sender) -> String {
+    match from {
+        Sender::Others => String::new(),
+        Sender::Slot(slot) => format!(" from {}", frame.slots[slot].name()),
+    }
 }
 
 /// `|a.x - b.x| <= 1, |a.y - b.y| <= 1`, to six digits, or all of whatever there is.
@@ -253,6 +274,8 @@ impl<'a> Block<'a> {
         for step in steps {
             match step {
                 ActionStep::Assign { value, .. } => self.functions.push(*value),
+                ActionStep::Draw { parameters, .. } => self.functions.extend(parameters),
+                ActionStep::Emit { values, delay, .. } => self.functions.extend(values.iter().chain(delay)),
                 ActionStep::If { condition, then, otherwise } => {
                     self.add_guard(condition);
                     self.add_steps(then);
@@ -306,6 +329,10 @@ impl<'a> Block<'a> {
 
     fn value(&self, sheet: &Sheet, function: FunctionId) -> String {
         sheet.text(self.system.functions[function].outputs[0])
+    }
+
+    fn values(&self, sheet: &Sheet, functions: &[FunctionId]) -> String {
+        functions.iter().map(|&function| self.value(sheet, function)).collect::<Vec<_>>().join(", ")
     }
 
     fn atoms(&mut self, sheet: &Sheet, atoms: &[Atom], indent: usize) {
@@ -373,12 +400,21 @@ impl<'a> Block<'a> {
         for step in steps {
             match step {
                 ActionStep::Assign { slot, target, value, .. } => {
-                    let column = match target {
-                        Target::State(k) => sheet.state(*slot, *k),
-                        Target::Aux(k) => sheet.aux(*slot, *k),
-                        Target::Mode => unreachable!("modes are not assigned"),
-                    };
+                    let column = column(sheet, *slot, *target);
                     self.line(indent, format!("{column} := {}", self.value(sheet, *value)));
+                }
+                ActionStep::Draw { slot, target, distribution, parameters, .. } => {
+                    let column = column(sheet, *slot, *target);
+                    let parameters = self.values(sheet, parameters);
+                    self.line(indent, format!("{column} ~ {}({parameters})", distribution.name()));
+                }
+                ActionStep::Emit { slot, event, values, delay, .. } => {
+                    let slot = &self.names.frame.slots[*slot];
+                    let event = &self.names.types[slot.ty()].events[*event].name;
+                    let (slot, values) = (slot.name(), self.values(sheet, values));
+                    let delay = delay.map(|delay| format!(" after {}", self.value(sheet, delay)));
+                    let delay = delay.unwrap_or_default();
+                    self.line(indent, format!("emit {slot}.{event}({values}){delay}"));
                 }
                 ActionStep::If { condition, then, otherwise } => {
                     let test = self.condition(sheet, condition, &condition.condition, 0);
@@ -400,5 +436,14 @@ impl<'a> Block<'a> {
                 }
             }
         }
+    }
+}
+
+/// The name of a column that is written.
+fn column(sheet: &Sheet, slot: usize, target: Target) -> String {
+    match target {
+        Target::State(k) => sheet.state(slot, k),
+        Target::Aux(k) => sheet.aux(slot, k),
+        Target::Mode => unreachable!("modes are not assigned"),
     }
 }

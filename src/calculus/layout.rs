@@ -2,7 +2,7 @@
 
 /// The columns of an agent type.
 ///
-/// Auxiliary columns in order: number, mode, time of entry, parameters, discretes, links, locks. Numbers of agents are
+/// Auxiliary columns in order: number, mode, time of entry, parameters, discretes, links, what a message carries, locks. Numbers of agents are
 /// held as reals, -1 for none. A lock holds the branch that a kink of the flow has taken (rule 15).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
@@ -14,6 +14,8 @@ pub struct Layout {
     pub n_discretes: usize,
     /// How many links.
     pub n_links: usize,
+    /// How many values the messages carry that it hears (the most that any event does).
+    pub n_received: usize,
     /// How many locks (the most that any mode needs).
     pub n_locks: usize,
 }
@@ -38,9 +40,13 @@ impl Layout {
     pub fn link(&self, k: usize) -> usize {
         3 + self.n_params + self.n_discretes + k
     }
+    /// Column of value k of the message at hand.
+    pub fn received(&self, k: usize) -> usize {
+        3 + self.n_params + self.n_discretes + self.n_links + k
+    }
     /// Column of lock k.
     pub fn lock(&self, k: usize) -> usize {
-        3 + self.n_params + self.n_discretes + self.n_links + k
+        3 + self.n_params + self.n_discretes + self.n_links + self.n_received + k
     }
     /// How many auxiliary columns there are.
     pub fn n_aux(&self) -> usize {

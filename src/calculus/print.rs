@@ -70,7 +70,8 @@ impl Names<'_> {
             Layout::ENTRY => self.of(slot, "entry"),
             _ if column < layout.discrete(0) => self.of(slot, &agent.params[column - layout.param(0)].name),
             _ if column < layout.link(0) => self.of(slot, &agent.discretes[column - layout.discrete(0)].name),
-            _ if column < layout.lock(0) => self.of(slot, &agent.links[column - layout.link(0)]),
+            _ if column < layout.received(0) => self.of(slot, &agent.links[column - layout.link(0)]),
+            _ if column < layout.lock(0) => format!("received{}", column - layout.received(0) + 1),
             _ => self.of(slot, &format!("lock{}", column - layout.lock(0))),
         }
     }
@@ -273,7 +274,7 @@ impl<'a> Sheet<'a> {
             Op::Le if self.graph.is_zero(a) => {
                 let (slot, at) = column(b)?;
                 let layout = &self.names.agent(slot).layout;
-                (layout.link(0)..layout.lock(0)).contains(&at).then(|| self.names.aux(slot, at as u32))
+                (layout.link(0)..layout.received(0)).contains(&at).then(|| self.names.aux(slot, at as u32))
             }
             Op::Eq => {
                 let (slot, k) = match (column(a), column(b)) {

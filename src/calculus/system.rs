@@ -17,6 +17,7 @@ pub use crate::calculus::layout::Layout;
 pub use crate::calculus::range::{Near, Range};
 pub use crate::calculus::relation::Relation;
 use crate::math::Scale;
+pub use crate::math::draw::Distribution;
 pub use crate::model::ir::{Aggregate, Block, Instance, Integrator, Population, Record, Run, VarRef};
 
 /// Names a [`Function`].
@@ -165,6 +166,10 @@ pub struct AgentSystem {
     pub discretes: Vec<Column>,
     /// Names of the links.
     pub links: Vec<String>,
+    /// Its events.
+    pub events: Vec<EventSystem>,
+    /// What its random numbers are drawn for, each a stream of its own, by name.
+    pub streams: Vec<String>,
     /// Algebraic definitions, for recording.
     pub lets: Vec<LetSystem>,
     /// Recordable names in order of declaration.
@@ -184,6 +189,15 @@ pub struct Column {
     pub scale: Scale,
     /// Whether it holds a boolean.
     pub boolean: bool,
+}
+
+/// An event of an agent type.
+#[derive(Clone, Debug)]
+pub struct EventSystem {
+    /// Its name.
+    pub name: String,
+    /// The names of what it carries.
+    pub params: Vec<String>,
 }
 
 /// A `let`, computed when it is recorded.
@@ -470,6 +484,24 @@ pub enum Trigger {
         /// None: true.
         guard: Option<Guard>,
     },
+    /// By a message, if the guard holds at its turn.
+    On {
+        /// The events that it hears, by type and number.
+        events: Vec<(usize, usize)>,
+        /// From whom.
+        from: Sender,
+        /// None: true.
+        guard: Option<Guard>,
+    },
+}
+
+/// Whose messages are heard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sender {
+    /// Those of everybody else.
+    Others,
+    /// Those of the agent in a slot; only if that is slot 0 also one's own.
+    Slot(usize),
 }
 
 /// Actions; all right-hand sides read the state before the list.
@@ -505,6 +537,34 @@ pub enum ActionStep {
         target: Target,
         /// One output.
         value: FunctionId,
+        /// Where it stands.
+        span: Span,
+    },
+    /// Writes a number drawn at random.
+    Draw {
+        /// Whose column.
+        slot: usize,
+        /// Which column.
+        target: Target,
+        /// From what.
+        distribution: Distribution,
+        /// Its parameters, one output each.
+        parameters: Vec<FunctionId>,
+        /// Which of the streams of the agent's type.
+        stream: usize,
+        /// Where it stands.
+        span: Span,
+    },
+    /// Sends a message.
+    Emit {
+        /// Who.
+        slot: usize,
+        /// The number of the event in the sender's type.
+        event: usize,
+        /// What it carries, one output each.
+        values: Vec<FunctionId>,
+        /// One output, s; none: at once.
+        delay: Option<FunctionId>,
         /// Where it stands.
         span: Span,
     },

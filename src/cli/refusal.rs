@@ -54,6 +54,6 @@ fn stops(actions: &[Action]) -> bool {
     actions.iter().any(|action| match action {
         Action::Stop { .. } => true,
         Action::If { then, otherwise, .. } => stops(then) || stops(otherwise),
-        Action::Assign { .. } | Action::Goto { .. } => false,
+        Action::Assign { .. } | Action::Draw { .. } | Action::Emit { .. } | Action::Goto { .. } => false,
     })
 }

@@ -5,10 +5,10 @@ use crate::calculus::graph::Graph;
 use crate::calculus::system::Function;
 pub use crate::calculus::system::FunctionId;
 pub use crate::calculus::system::{
-    ActionList, ActionStep, AgentSystem, Aggregate, Atom, ClaimKind, ClaimSystem, Column, Condition, Flow,
-    Fold, Frame, Guard, Integrator, InteractionSystem, Jumps, Kink, KinkKind, Layout, LetSystem, LetValue,
-    ModeSystem, Near, PairTransition, Population, Quantified, Range, Record, Relation, Run, Slot, Target,
-    Term, TransitionSystem, Trigger, VarRef,
+    ActionList, ActionStep, AgentSystem, Aggregate, Atom, ClaimKind, ClaimSystem, Column, Condition,
+    Distribution, Flow, Fold, Frame, Guard, Integrator, InteractionSystem, Jumps, Kink, KinkKind, Layout,
+    LetSystem, LetValue, ModeSystem, Near, PairTransition, Population, Quantified, Range, Record, Relation,
+    Run, Sender, Slot, Target, Term, TransitionSystem, Trigger, VarRef,
 };
 use crate::codegen::kernel::{Kernel, StepKernel};
 use crate::codegen::series::SeriesTape;

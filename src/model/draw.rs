@@ -22,13 +22,15 @@ pub(super) enum Given {
 /// A distribution with its parameters.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Draw {
-    distribution: Distribution,
+    /// From what.
+    pub distribution: Distribution,
     /// As many as the distribution has; the last is repeated.
     parameters: [ExprId; 2],
 }
 
 impl Draw {
-    fn parameters(&self) -> &[ExprId] {
+    /// The parameters of the distribution.
+    pub fn parameters(&self) -> &[ExprId] {
         &self.parameters[..self.distribution.parameters().len()]
     }
 }

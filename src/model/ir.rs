@@ -4,6 +4,7 @@
 //! without agents in it is already a number. Values are SI. Modes form a tree whose root (number 0) is the agent itself.
 
 use crate::base::{Arena, Idx, Span};
+use crate::math::draw::Distribution;
 use crate::math::{Op, Scale};
 pub use crate::model::applied::Operands;
 pub use crate::model::integrator::Integrator;
@@ -104,6 +105,8 @@ pub enum ExprKind {
     Time,
     /// A parameter of the enclosing function, by position.
     Local(usize),
+    /// What a message carries, by position: bound by the `on` of the enclosing transition.
+    Received(usize),
     /// The agent whose text this is.
     SelfAgent,
     /// A participant of the enclosing interaction: 0 or 1.
@@ -243,6 +246,8 @@ pub struct AgentType {
     pub discretes: Vec<Variable>,
     /// Links; parameters of agent type are links that are never none.
     pub links: Vec<Link>,
+    /// Events that its agents emit.
+    pub events: Vec<Event>,
     /// Algebraic definitions, each after those that it reads (of the same agent).
     pub lets: Vec<Let>,
     /// Recordable names in order of declaration.
@@ -290,6 +295,17 @@ pub struct Link {
     pub ty: TypeId,
     /// A parameter of agent type: never none.
     pub required: bool,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// `event name(params)`.
+#[derive(Clone, Debug)]
+pub struct Event {
+    /// Its name.
+    pub name: String,
+    /// What its messages carry.
+    pub params: Vec<Variable>,
     /// Where it is declared.
     pub span: Span,
 }
@@ -396,6 +412,15 @@ pub enum Trigger {
     After(ExprId, Option<ExprId>),
     /// `every period (when guard)`.
     Every(ExprId, Option<ExprId>),
+    /// `on event (from sender) (when guard)`.
+    On {
+        /// The events that it hears, by type and number; in order of the types.
+        events: Vec<(TypeId, usize)>,
+        /// From whom; none: from anybody else.
+        from: Option<ExprId>,
+        /// None: true.
+        guard: Option<ExprId>,
+    },
 }
 
 /// A step of a list of actions. All right-hand sides of one list read the state before it.
@@ -409,6 +434,32 @@ pub enum Action {
         variable: VarRef,
         /// The new value.
         value: ExprId,
+        /// Where it stands.
+        span: Span,
+    },
+    /// `variable ~ distribution`.
+    Draw {
+        /// Whose.
+        agent: ExprId,
+        /// Which.
+        variable: VarRef,
+        /// From what.
+        distribution: Distribution,
+        /// Its parameters.
+        parameters: Vec<ExprId>,
+        /// Where it stands.
+        span: Span,
+    },
+    /// `emit event(values) (after delay)`.
+    Emit {
+        /// Who.
+        agent: ExprId,
+        /// The number of the event in the agent's type.
+        event: usize,
+        /// What it carries.
+        values: Vec<ExprId>,
+        /// None: at once.
+        delay: Option<ExprId>,
         /// Where it stands.
         span: Span,
     },

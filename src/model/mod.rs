@@ -30,6 +30,7 @@ mod quantifier;
 mod overrides;
 mod draw;
 mod define;
+mod events;
 mod actions;
 mod transition;
 mod behaviour;

@@ -157,6 +157,7 @@ fn needs_of(model: &Model, table: &Table, id: ExprId) -> Needs {
         ExprKind::Number(_)
         | ExprKind::Time
         | ExprKind::Local(_)
+        | ExprKind::Received(_)
         | ExprKind::SelfAgent
         | ExprKind::Participant(_)
         | ExprKind::Bound(_)

@@ -29,6 +29,12 @@ impl<'a> Context<'a> {
             self.quantities.insert(value.id, slot.quantity());
             return value;
         }
+        if let Some(number) = scope.received.iter().position(|(value, _)| *value == name) {
+            let slot = scope.received[number].1;
+            let value = self.push(ExprKind::Received(number), slot.ty, span);
+            self.quantities.insert(value.id, slot.quantity());
+            return value;
+        }
         match scope.home {
             Home::Agent(ty, mode) => {
                 if let Some(member) = self.visible_member(ty, mode, name) {
@@ -153,6 +159,7 @@ impl<'a> Context<'a> {
             let mut known = CONSTANTS.to_vec();
             known.extend(scope.bound.iter().map(|(bound, _)| *bound));
             known.extend(scope.locals.iter().map(|(local, _)| *local));
+            known.extend(scope.received.iter().map(|(value, _)| *value));
             known.extend(self.globals.keys());
             if let Home::Agent(ty, mode) = scope.home {
                 known.extend(self.agents[ty.index()].mode_lets[mode.index()].keys());
@@ -221,7 +228,7 @@ impl<'a> Context<'a> {
                 _ => return self.wrong(span),
             },
             Member::Twice => return self.wrong(span),
-            Member::Event => {
+            Member::Event(_) => {
                 let help = "events are sent by `emit` and received by `on`";
                 self.report(NameError::NotAValue { name: name.to_string(), what: "an event", span, help });
                 return self.wrong(span);

@@ -11,6 +11,7 @@ use super::actions::Written;
 use super::context::{Context, Home, Scope, Value};
 use super::dimension::Dimension;
 use super::error::{ActionError, ModeError, NameError, TypeError};
+use super::events::Heard;
 use super::ir::{BinderId, ExprKind, ModeId, Transition, Trigger, TypeId};
 use super::types::{Slot, Ty};
 use crate::base::Span;
@@ -21,6 +22,13 @@ use crate::syntax::ast::{self, BodyItem, InteractionItem, TriggerKind};
 struct Guard<'a> {
     condition: Value,
     witnesses: Vec<(&'a str, BinderId)>,
+}
+
+/// Whether `rising` and `crossing` may stand in a guard.
+#[derive(Clone, Copy)]
+enum Edges {
+    Allowed,
+    Refused,
 }
 
 /// The names that transitions of one owner have so far.
@@ -99,8 +107,13 @@ impl<'a> Context<'a> {
                 let why = "an interaction has two participants, so `->` behind its guard names neither";
                 self.report(ActionError::ModeChange { span: target.span, why, help });
             }
-            if matches!(item.trigger.kind, TriggerKind::After(_) | TriggerKind::Every(_)) {
-                let word = if matches!(item.trigger.kind, TriggerKind::After(_)) { "after" } else { "every" };
+            let alone = match item.trigger.kind {
+                TriggerKind::When | TriggerKind::Rate(_) => None,
+                TriggerKind::After(_) => Some("after"),
+                TriggerKind::Every(_) => Some("every"),
+                TriggerKind::On { .. } => Some("on"),
+            };
+            if let Some(word) = alone {
                 self.refuse(format!("`{word}` transitions of interactions"), item.trigger.span);
                 continue;
             }
@@ -118,7 +131,16 @@ impl<'a> Context<'a> {
     /// Everything but label and target; none if the trigger is not supported.
     fn transition(&mut self, home: Home, source: ModeId, item: &'a ast::Transition) -> Option<Transition> {
         let mut scope = Scope::of(home);
-        let guard = item.trigger.guard.as_ref().map(|guard| self.guard(&mut scope, guard));
+        let heard = match &item.trigger.kind {
+            TriggerKind::On { event, binders, sender } => {
+                Some(self.hearing(&mut scope, event, binders, sender.as_ref()))
+            }
+            TriggerKind::When | TriggerKind::After(_) | TriggerKind::Every(_) | TriggerKind::Rate(_) => None,
+        };
+        // What an `on` waits for is asked when its message comes, and at no other time: nothing rises or crosses.
+        let edges = if heard.is_some() { Edges::Refused } else { Edges::Allowed };
+        scope.received = heard.as_ref().map_or(Vec::new(), |heard| heard.received.clone());
+        let guard = item.trigger.guard.as_ref().map(|guard| self.guard(&mut scope, guard, edges));
         let condition = guard.as_ref().map(|guard| guard.condition.id);
         let trigger = match &item.trigger.kind {
             TriggerKind::When => Trigger::When(condition.unwrap_or_else(|| self.wrong(item.trigger.span).id)),
@@ -136,8 +158,8 @@ impl<'a> Context<'a> {
                 return None;
             }
             TriggerKind::On { .. } => {
-                self.refuse("`on` transitions", item.trigger.span);
-                return None;
+                let Heard { events, from, .. } = heard?;
+                Trigger::On { events, from, guard: condition }
             }
         };
         let witnesses = guard.map(|guard| guard.witnesses).unwrap_or_default();
@@ -160,7 +182,8 @@ impl<'a> Context<'a> {
         })
     }
 
-    fn duration(
+    /// A delay or a period; a diagnostic if it is a constant that is not allowed.
+    pub fn duration(
         &mut self,
         scope: &mut Scope<'a>,
         expr: &'a ast::Expr,
@@ -180,12 +203,16 @@ impl<'a> Context<'a> {
     }
 
     /// A guard. An `exists` that is all of it, or a term of its outermost `and`, gives its agent to the actions.
-    fn guard(&mut self, scope: &mut Scope<'a>, expr: &'a ast::Expr) -> Guard<'a> {
+    fn guard(&mut self, scope: &mut Scope<'a>, expr: &'a ast::Expr, edges: Edges) -> Guard<'a> {
         let terms = match &expr.kind {
             ast::ExprKind::And(terms) => terms.as_slice(),
             _ => std::slice::from_ref(expr),
         };
-        let values = terms.iter().map(|term| self.lower_guard(scope, term)).collect::<Vec<_>>();
+        let lower = match edges {
+            Edges::Allowed => Self::lower_guard,
+            Edges::Refused => Self::lower_condition,
+        };
+        let values = terms.iter().map(|term| lower(self, scope, term)).collect::<Vec<_>>();
         let mut witnesses: Vec<(&'a str, BinderId)> = Vec::new();
         for (term, value) in terms.iter().zip(&values) {
             let ast::ExprKind::Quantifier(item) = &term.kind else { continue };

@@ -10,6 +10,7 @@ use crate::runtime::engine::{Engine, StopRequest};
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::fold;
 use crate::runtime::guards::Origin;
+use crate::runtime::mail::Message;
 use crate::runtime::population::Slots;
 use crate::runtime::present::Depth;
 use crate::runtime::truth;
@@ -51,6 +52,19 @@ pub struct Effect {
     exits: Vec<Write>,
     /// Changes of mode.
     pub moves: Vec<Move>,
+    /// Messages, each with its delay, s.
+    pub sent: Vec<(Message, f64)>,
+}
+
+/// What the functions of a list of actions are read on.
+#[derive(Clone, Copy)]
+pub struct Rows<'r> {
+    /// The agents that the list reads.
+    pub frame: &'r Frame,
+    /// Who they are.
+    pub slots: &'r Slots,
+    /// Those that `other` leaves out.
+    pub own: &'r [usize],
 }
 
 /// What has been written in a micro-step.
@@ -149,6 +163,9 @@ impl Engine<'_, '_> {
                     }
                     effect.writes.push(write);
                 }
+                ActionStep::Draw { .. } | ActionStep::Emit { .. } => {
+                    self.run_send(step, Rows { frame: &list.frame, slots, own }, effect)?;
+                }
                 ActionStep::If { condition, then, otherwise } => {
                     let holds =
                         truth::test(&self.agents, &mut self.present, condition, &list.frame, slots, own);
@@ -160,6 +177,7 @@ impl Engine<'_, '_> {
                     let mut exit = Effect::default();
                     self.exit(&change, &mut exit)?;
                     effect.exits.append(&mut exit.writes);
+                    effect.sent.append(&mut exit.sent);
                     effect.moves.push(change);
                 }
                 ActionStep::Stop { reason, .. } => {
@@ -187,7 +205,8 @@ impl Engine<'_, '_> {
         self.program.blame(function, 0, &Point { frame, slots: &views, time: self.present.time })
     }
 
-    fn action_not_finite(&mut self, write: &Write, blame: Option<Blame>) -> Reason {
+    /// An action gives a variable a value that is not finite.
+    pub fn action_not_finite(&mut self, write: &Write, blame: Option<Blame>) -> Reason {
         let system = &self.program.types[self.agents.agents[write.agent].ty];
         let variable = match write.target {
             Target::State(k) => system.states[k].name.clone(),
@@ -213,6 +232,7 @@ impl Engine<'_, '_> {
             for change in &effect.moves {
                 self.enter_mode(change, &mut written);
             }
+            self.send(&effect.sent);
         }
         self.present.forget();
         let moves: Vec<Move> = effects.iter().flat_map(|effect| effect.moves.iter().cloned()).collect();
@@ -244,6 +264,7 @@ impl Engine<'_, '_> {
             for write in &effect.writes {
                 self.write(write, written);
             }
+            self.send(&effect.sent);
             self.present.forget();
         }
         Ok(())
@@ -418,7 +439,10 @@ fn gotos(steps: &[ActionStep], visit: &mut dyn FnMut(usize, usize)) {
                 gotos(then, visit);
                 gotos(otherwise, visit);
             }
-            ActionStep::Assign { .. } | ActionStep::Stop { .. } => {}
+            ActionStep::Assign { .. }
+            | ActionStep::Draw { .. }
+            | ActionStep::Emit { .. }
+            | ActionStep::Stop { .. } => {}
         }
     }
 }

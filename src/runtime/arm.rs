@@ -78,7 +78,7 @@ impl<'p> Engine<'p, '_> {
     fn set_schedule(&mut self, instance: u32) -> Result<(), Failure> {
         let Some(transition) = self.guards.definition(instance).origin.transition() else { return Ok(()) };
         let (function, least) = match &transition.trigger {
-            Trigger::When(_) => return Ok(()),
+            Trigger::When(_) | Trigger::On { .. } => return Ok(()),
             Trigger::After { delay, .. } => (*delay, 0.0),
             Trigger::Every { period, .. } => (*period, f64::MIN_POSITIVE),
         };
@@ -336,7 +336,7 @@ impl<'p> Engine<'p, '_> {
         }
         let Some(transition) = self.guards.definition(instance).origin.transition() else { return false };
         match &transition.trigger {
-            Trigger::Every { .. } => false,
+            Trigger::Every { .. } | Trigger::On { .. } => false,
             Trigger::After { .. } => state.aged && self.truths().holds_now(instance),
             Trigger::When(_) => self.truths().holds_now(instance),
         }

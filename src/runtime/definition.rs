@@ -75,6 +75,11 @@ pub struct Definition<'p> {
 }
 
 impl Definition<'_> {
+    /// What makes it fire; none for a claim.
+    pub fn trigger(&self) -> Option<&Trigger> {
+        self.origin.transition().map(|transition| &transition.trigger)
+    }
+
     /// The place of the first comparison of an aggregate's filter.
     pub fn base_of(&self, number: usize) -> usize {
         let found = self.folds.binary_search_by_key(&number, |&(number, _)| number);
@@ -131,11 +136,13 @@ fn may_be_listed(definition: &Definition<'_>) -> bool {
         && definition.comparisons.iter().all(|atom| atom.relation != Relation::Crossing)
 }
 
-/// The condition of a transition, if it has one.
+/// The condition of a transition that is followed along the flow, if it has one.
 pub fn guard_of(transition: &TransitionSystem) -> Option<&Guard> {
     match &transition.trigger {
         Trigger::When(guard) => Some(guard),
         Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
+        // Asked when a message comes, and not followed.
+        Trigger::On { .. } => None,
     }
 }
 

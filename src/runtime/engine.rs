@@ -16,6 +16,7 @@ use crate::runtime::failure::{Failure, Place, Reason};
 use crate::runtime::groups::Groups;
 use crate::runtime::guards::{Guards, Listing, Origin, TooManyGuards};
 use crate::runtime::limits::Limits;
+use crate::runtime::mail::Mail;
 use crate::runtime::neighbours::Neighbours;
 use crate::runtime::notes::Notes;
 use crate::runtime::observe::{Cell, End, FalseAssert, Last, Observer, Outcome, Stats, TypeStats};
@@ -107,6 +108,8 @@ pub struct Engine<'p, 'o> {
     pub has_thawed: bool,
     /// What is due when.
     pub queues: Queues,
+    /// Messages under way.
+    pub mail: Mail,
     /// Makes rows of trajectories.
     pub recorder: Recorder<'p>,
     /// Watches for Zeno behaviour and chattering.
@@ -189,6 +192,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             points: Vec::new(),
             registers: Vec::new(),
             queues: Queues::default(),
+            mail: Mail::default(),
             notes: observer.wants_reasons().then(|| Box::new(Notes::new(&agents))),
             firings: vec![0; guards.definitions.len()],
             events_of_type: vec![0; program.types.len()],

@@ -6,7 +6,7 @@
 
 use smallvec::SmallVec;
 
-use crate::codegen::program::{Atom, Layout, Quantified, Range, Relation};
+use crate::codegen::program::{Atom, Layout, Quantified, Range, Relation, Trigger};
 use crate::runtime::definition::{AtomShape, Definition, definitions};
 pub use crate::runtime::definition::{Listing, Origin};
 use crate::runtime::population::{Agents, Slots};
@@ -126,6 +126,8 @@ pub struct Guards<'p> {
     pub rising: Vec<bool>,
     /// For each agent, the instances of which it is a root.
     pub of_agent: Vec<Vec<u32>>,
+    /// For each agent, its instances that wait for messages.
+    pub hearing: Vec<Vec<u32>>,
     /// For each type, the instances with a quantifier that may read any agent of it.
     pub over_type: Vec<Vec<u32>>,
     /// How many instances range over more than one agent (pairs, and bindings of quantifiers), those listed anew included.
@@ -156,6 +158,7 @@ impl<'p> Guards<'p> {
             atoms: Vec::new(),
             rising: Vec::new(),
             of_agent: vec![Vec::new(); agents.len()],
+            hearing: vec![Vec::new(); agents.len()],
             over_type: vec![Vec::new(); agents.of_type.len()],
             n_pairs: 0,
             free: vec![Vec::new(); definitions.len()],
@@ -192,6 +195,9 @@ impl<'p> Guards<'p> {
         self.atoms.resize(self.atoms.len() + definition.n_atoms, AtomState::new(instance));
         self.rising.resize(self.rising.len() + definition.n_rising, false);
         self.of_agent[roots[0] as usize].push(instance);
+        if let Some(Trigger::On { .. }) = definition.trigger() {
+            self.hearing[roots[0] as usize].push(instance);
+        }
         if matches!(definition.origin, Origin::Pair(_)) {
             self.of_agent[roots[1] as usize].push(instance);
             self.n_pairs += 1;

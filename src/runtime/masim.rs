@@ -13,7 +13,7 @@ use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::groups::KinkHit;
 use crate::runtime::guards::Origin;
-use crate::runtime::instant::Candidate;
+use crate::runtime::instant::{By, Candidate};
 use crate::runtime::observe::{End, Progress};
 use crate::runtime::present::Depth;
 use crate::runtime::repetition::Finding;
@@ -93,7 +93,7 @@ impl Engine<'_, '_> {
         self.arm_all()?;
         let instances = 0..self.guards.instances.len() as u32;
         let enabled = instances.clone().filter(|&instance| self.enabled(instance));
-        let candidates = enabled.map(|instance| Candidate { instance, pulse: None }).collect();
+        let candidates = enabled.map(|instance| Candidate { instance, by: By::Guard }).collect();
         self.instant(candidates)?;
         let claims: Vec<u32> = instances
             .filter(|&instance| matches!(self.guards.definition(instance).origin, Origin::Claim(_)))

@@ -18,6 +18,7 @@
 //! | 6 t = 0 | locks, groups, entry actions, arming, micro-steps, claims | `masim` |
 //! | 7 after a reset | only what a write concerns restarts | `act` |
 //! | 8 claims | a false invariant ends the run, a false assert is reported | `instant` |
+//! | 9 events | what is emitted is heard in the next micro-step, one message an agent, in the order of the senders | `mail`, `hear` |
 //! | 11 time | `after` and `every` count from entry, as products | `arm`, `gather` |
 //! | 12 end | `until`, `stop`, errors; the state of all at that time | `masim`, `repetition` |
 //! | 13 coupling | who reads another's states in its flow steps with it | `groups` |
@@ -61,15 +62,19 @@ mod failure;
 mod advance;
 mod stiffness;
 mod repetition;
+mod mail;
 mod record;
 mod neighbours;
 mod engine;
 mod point;
+mod asked;
 mod act;
+mod send;
 mod arm;
 mod near_pairs;
 mod sleep;
 mod hot;
+mod hear;
 mod instant;
 mod certify;
 mod explain;

@@ -30,6 +30,8 @@ pub struct Agent {
     pub states: Vec<f64>,
     /// Its auxiliary columns; they are always those of the present.
     pub aux: Vec<f64>,
+    /// How many random numbers it has drawn, by stream of its type.
+    pub draws: Vec<u64>,
     /// Its trajectory over its last step.
     pub segment: Segment,
 }
@@ -76,7 +78,8 @@ impl<'p> Agents<'p> {
             let rank = of_type[ty].len();
             of_type[ty].push(number);
             let segment = Segment::at(0.0, &instance.states);
-            agents.push(Agent { ty, rank, mode, group: 0, states: instance.states.clone(), aux, segment });
+            let (states, draws) = (instance.states.clone(), vec![0; system.streams.len()]);
+            agents.push(Agent { ty, rank, mode, group: 0, states, aux, draws, segment });
         }
         let mut linked_from = vec![Vec::new(); agents.len()];
         for (number, instance) in program.population.agents.iter().enumerate() {

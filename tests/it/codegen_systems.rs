@@ -153,6 +153,8 @@ pub fn with_flow(graph: Graph, rates: Vec<NodeId>) -> System {
         params: (0..N_COLUMNS).map(column).collect(),
         discretes: Vec::new(),
         links: Vec::new(),
+        events: Vec::new(),
+        streams: Vec::new(),
         lets: Vec::new(),
         declared: Vec::new(),
         modes: vec![mode],

@@ -16,6 +16,7 @@ use hyc::runtime::observe::{
     Cause, Cell, End, Explanation, FalseAssert, Last, Observer, Outcome, Row, ShownComparison, Stats,
     Undecided,
 };
+use hyc::runtime::paper::Form;
 
 /// A model with what the command line says about its run.
 #[derive(Default)]
@@ -105,6 +106,23 @@ pub struct Run {
 #[track_caller]
 pub fn simulate(text: &str) -> Run {
     Case::new(text).run()
+}
+
+/// Runs a model with both forms of the engine, which must tell the same; what the fast form told.
+#[track_caller]
+pub fn simulate_forms(text: &str) -> Run {
+    let [fast, plain] = [Form::Fast, Form::Plain].map(|form| {
+        let run = Case::new(text).algorithm(Algorithm::Masim(form)).run();
+        for warning in &run.warnings {
+            assert_eq!(warning.code, "HY0520");
+        }
+        run
+    });
+    assert_eq!(fast.log(), plain.log(), "the forms differ");
+    let times = |run: &Run| run.events.iter().map(|event| event.time).collect::<Vec<_>>();
+    all_near(&times(&fast), &times(&plain), 1e-6);
+    assert_eq!(fast.end, plain.end);
+    fast
 }
 
 /// Runs a model that must be right, and must end in an error.

@@ -15,7 +15,9 @@ pub const COMPARED_MAX: usize = 64;
 pub fn guard(transition: &TransitionSystem) -> Option<&Guard> {
     match &transition.trigger {
         Trigger::When(guard) => Some(guard),
-        Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
+        Trigger::After { guard, .. } | Trigger::Every { guard, .. } | Trigger::On { guard, .. } => {
+            guard.as_ref()
+        }
     }
 }
 
@@ -28,7 +30,7 @@ pub fn plain_guard(transition: &TransitionSystem) -> Option<&Guard> {
             };
             (guard.n_rising == 0 && !guard.atoms.iter().any(crosses)).then_some(guard)
         }
-        Trigger::After { .. } | Trigger::Every { .. } => None,
+        Trigger::After { .. } | Trigger::Every { .. } | Trigger::On { .. } => None,
     }
 }
 
@@ -107,14 +109,14 @@ pub fn effect<'s>(ty: &'s AgentSystem, transition: &'s TransitionSystem) -> Effe
 fn conditional(steps: &[ActionStep], found: &mut FxHashSet<Target>) {
     for step in steps {
         match step {
-            ActionStep::Assign { target, .. } => {
+            ActionStep::Assign { target, .. } | ActionStep::Draw { target, .. } => {
                 found.insert(*target);
             }
             ActionStep::If { then, otherwise, .. } => {
                 conditional(then, found);
                 conditional(otherwise, found);
             }
-            ActionStep::Goto { .. } | ActionStep::Stop { .. } => {}
+            ActionStep::Emit { .. } | ActionStep::Goto { .. } | ActionStep::Stop { .. } => {}
         }
     }
 }
@@ -123,7 +125,10 @@ fn stops(steps: &[ActionStep]) -> bool {
     steps.iter().any(|step| match step {
         ActionStep::Stop { .. } => true,
         ActionStep::If { then, otherwise, .. } => stops(then) || stops(otherwise),
-        ActionStep::Assign { .. } | ActionStep::Goto { .. } => false,
+        ActionStep::Assign { .. }
+        | ActionStep::Draw { .. }
+        | ActionStep::Emit { .. }
+        | ActionStep::Goto { .. } => false,
     })
 }
 

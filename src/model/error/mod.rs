@@ -4,10 +4,12 @@ pub(super) mod names;
 pub(super) mod types;
 pub(super) mod dimensions;
 pub(super) mod modes;
+pub(super) mod events;
 pub(super) mod data;
 
 pub(super) use data::{FileError, LimitError, OverrideError, RunError, SystemError, ValueError};
 pub(super) use dimensions::{DimensionError, Evidence, Side};
+pub(super) use events::EventError;
 pub(super) use modes::{ActionError, ModeError};
 pub(super) use names::NameError;
 pub(super) use types::TypeError;

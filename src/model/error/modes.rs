@@ -79,7 +79,7 @@ impl From<ModeError> for Diagnostic {
             ModeError::EdgeOutsideGuard { name, span } => {
                 Diagnostic::error("HY0246", format!("`{name}` has a meaning only in a guard"))
                     .label(span, "not a guard, or inside something else than `and`, `or`, `not`")
-                    .help("write it behind `when`, joined to other conditions by `and`, `or` and `not` only")
+                    .help("write it behind `when`, but not of an `on`, joined to other conditions by `and`, `or` and `not` only")
             }
             ModeError::BadPeriod { what, needs, span, value } => {
                 Diagnostic::error("HY0247", format!("{what} must be {needs}"))

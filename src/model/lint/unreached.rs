@@ -52,7 +52,7 @@ fn gotos(list: &[Action], types: &[TypeId; 2], starts: &mut [Vec<ModeId>]) {
                 gotos(then, types, starts);
                 gotos(otherwise, types, starts);
             }
-            Action::Assign { .. } | Action::Stop { .. } => {}
+            Action::Assign { .. } | Action::Draw { .. } | Action::Emit { .. } | Action::Stop { .. } => {}
         }
     }
 }

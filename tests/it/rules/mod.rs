@@ -10,6 +10,7 @@ mod rule_05_writing;
 mod rule_06_start;
 mod rule_07_reset;
 mod rule_08_claims;
+mod rule_09_events;
 mod rule_11_time;
 mod rule_12_end;
 mod rule_13_coupling;
