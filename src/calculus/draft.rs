@@ -105,7 +105,7 @@ impl<'m> Draft<'m> {
 fn n_received(model: &Model, ty: &AgentType) -> usize {
     let heard = ty.transitions.iter().flat_map(|transition| match &transition.trigger {
         Trigger::On { events, .. } => events.as_slice(),
-        Trigger::When(_) | Trigger::After(..) | Trigger::Every(..) => &[],
+        Trigger::When(_) | Trigger::After(..) | Trigger::Every(..) | Trigger::Rate { .. } => &[],
     });
     heard.map(|&(ty, event)| model.types[ty].events[event].params.len()).max().unwrap_or(0)
 }
@@ -115,7 +115,8 @@ fn columns(model: &Model, ty: &AgentType) -> AgentSystem {
     AgentSystem {
         name: ty.name.clone(),
         layout: Layout {
-            n_states: ty.states.len(),
+            n_states: ty.states.len() + ty.rates().count(),
+            n_hazards: ty.rates().count(),
             n_params: ty.params.len(),
             n_discretes: ty.discretes.len(),
             n_links: ty.links.len(),
@@ -126,6 +127,7 @@ fn columns(model: &Model, ty: &AgentType) -> AgentSystem {
         params: ty.params.iter().map(column).collect(),
         discretes: ty.discretes.iter().map(column).collect(),
         links: ty.links.iter().map(|link| link.name.clone()).collect(),
+        hazards: ty.rates().map(|transition| transition.label.clone()).collect(),
         events: ty.events.iter().map(event).collect(),
         streams: Vec::new(),
         lets: Vec::new(),

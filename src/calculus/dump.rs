@@ -39,6 +39,7 @@ fn agent(system: &System, ty: &AgentSystem, out: &mut String) {
         ("parameters", columns(&ty.params)),
         ("discretes", columns(&ty.discretes)),
         ("links", ty.links.clone()),
+        ("hazards", ty.hazards.clone()),
     ] {
         if !names.is_empty() {
             let _ = writeln!(out, "  {word} {}", names.join(", "));
@@ -93,6 +94,7 @@ fn mode(system: &System, ty: &AgentSystem, mode: &ModeSystem, out: &mut String) 
         let word = match claim.kind {
             ClaimKind::Invariant => "invariant",
             ClaimKind::Assert => "assert",
+            ClaimKind::Rate => "rate not negative",
         };
         let text = block.condition(&sheet, &claim.violation, &claim.violation.condition, 0);
         block.line(4, format!("{word} violated by {text}"));
@@ -122,13 +124,13 @@ fn flow(system: &System, ty: &AgentSystem, flow: &Flow, out: &mut String) {
     let sheet = block.sheet();
     let outputs = |function: FunctionId| &system.functions[function].outputs;
     for (primes, function) in [("'", flow.rates), ("''", flow.accelerations)] {
-        for (state, &rate) in ty.states.iter().zip(outputs(function)) {
-            block.line(4, format!("{}{primes} = {}", state.name, sheet.text(rate)));
+        for (state, &rate) in outputs(function).iter().enumerate() {
+            block.line(4, format!("{}{primes} = {}", ty.state_name(state), sheet.text(rate)));
         }
     }
     for (entry, &value) in flow.jacobian.iter().zip(outputs(flow.jacobian_values)) {
         let by = sheet.state(entry.slot, entry.column);
-        block.line(4, format!("d({}')/d({by}) = {}", ty.states[entry.row].name, sheet.text(value)));
+        block.line(4, format!("d({}')/d({by}) = {}", ty.state_name(entry.row), sheet.text(value)));
     }
     for kink in &flow.kinks {
         let holds = match &kink.kind {
@@ -176,6 +178,7 @@ fn transition(
         Trigger::After { delay, guard } => ("after", Some(*delay), guard.as_ref()),
         Trigger::Every { period, guard } => ("every", Some(*period), guard.as_ref()),
         Trigger::On { guard, .. } => ("on", None, guard.as_ref()),
+        Trigger::Rate { guard, .. } => ("rate", None, guard.as_ref()),
     };
     block.functions.extend(time.iter().chain(&transition.priority));
     if let Some(guard) = guard {
@@ -187,6 +190,9 @@ fn transition(
     block.line(2, format!("{head}{target}"));
     if let Some(time) = time {
         block.line(4, format!("{word} {}", block.value(&sheet, time)));
+    }
+    if let Trigger::Rate { due, .. } = &transition.trigger {
+        block.line(4, format!("rate: when {}", block.condition(&sheet, due, &due.condition, 0)));
     }
     if let Trigger::On { events, from, .. } = &transition.trigger {
         block.line(4, format!("on {}{}", heard(system, events), sender(&transition.frame, *from)));

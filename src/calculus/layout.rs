@@ -2,12 +2,15 @@
 
 /// The columns of an agent type.
 ///
-/// Auxiliary columns in order: number, mode, time of entry, parameters, discretes, links, what a message carries, locks. Numbers of agents are
+/// Auxiliary columns in order: number, mode, time of entry, parameters, discretes, links, what a message carries, gates, locks. Numbers of agents are
 /// held as reals, -1 for none. A lock holds the branch that a kink of the flow has taken (rule 15).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
-    /// How many states.
+    /// How many states, hazards included.
     pub n_states: usize,
+    /// How many of them, the last ones, are what is left of the hazards of its `rate` transitions, each with a gate: 1 while the
+    /// guard of the transition is true, else 0.
+    pub n_hazards: usize,
     /// How many parameters.
     pub n_params: usize,
     /// How many discrete variables.
@@ -44,9 +47,17 @@ impl Layout {
     pub fn received(&self, k: usize) -> usize {
         3 + self.n_params + self.n_discretes + self.n_links + k
     }
+    /// Number of the state that is left of hazard k.
+    pub fn hazard(&self, k: usize) -> usize {
+        self.n_states - self.n_hazards + k
+    }
+    /// Column of the gate of hazard k.
+    pub fn gate(&self, k: usize) -> usize {
+        3 + self.n_params + self.n_discretes + self.n_links + self.n_received + k
+    }
     /// Column of lock k.
     pub fn lock(&self, k: usize) -> usize {
-        3 + self.n_params + self.n_discretes + self.n_links + self.n_received + k
+        self.gate(self.n_hazards) + k
     }
     /// How many auxiliary columns there are.
     pub fn n_aux(&self) -> usize {

@@ -77,9 +77,8 @@ fn has_pairs(system: &System) -> bool {
 fn guard_of(trigger: &mut Trigger) -> Option<&mut Guard> {
     match trigger {
         Trigger::When(guard) => Some(guard),
-        Trigger::After { guard, .. } | Trigger::Every { guard, .. } | Trigger::On { guard, .. } => {
-            guard.as_mut()
-        }
+        Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_mut(),
+        Trigger::On { guard, .. } | Trigger::Rate { guard, .. } => guard.as_mut(),
     }
 }
 

@@ -55,7 +55,7 @@ impl Names<'_> {
         if let Slot::Fold { name, .. } = &self.frame.slots[slot as usize] {
             return format!("{name}{primes}");
         }
-        self.of(slot, &format!("{}{primes}", self.agent(slot).states[column as usize].name))
+        self.of(slot, &format!("{}{primes}", self.agent(slot).state_name(column as usize)))
     }
 
     fn aux(&self, slot: u32, column: u32) -> String {
@@ -71,7 +71,8 @@ impl Names<'_> {
             _ if column < layout.discrete(0) => self.of(slot, &agent.params[column - layout.param(0)].name),
             _ if column < layout.link(0) => self.of(slot, &agent.discretes[column - layout.discrete(0)].name),
             _ if column < layout.received(0) => self.of(slot, &agent.links[column - layout.link(0)]),
-            _ if column < layout.lock(0) => format!("received{}", column - layout.received(0) + 1),
+            _ if column < layout.gate(0) => format!("received{}", column - layout.received(0) + 1),
+            _ if column < layout.lock(0) => self.of(slot, &format!("gate{}", column - layout.gate(0) + 1)),
             _ => self.of(slot, &format!("lock{}", column - layout.lock(0))),
         }
     }

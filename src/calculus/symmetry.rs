@@ -93,7 +93,7 @@ impl<'a> Former<'a> {
                 parts.extend(guard.as_ref().map(|guard| self.guard(guard)));
                 parts
             }
-            Trigger::On { .. } => unreachable!("interactions hear nothing"),
+            Trigger::On { .. } | Trigger::Rate { .. } => unreachable!("the model refuses these in interactions"),
         };
         if let Some(priority) = transition.priority {
             let priority = self.function(priority);

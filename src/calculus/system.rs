@@ -166,6 +166,8 @@ pub struct AgentSystem {
     pub discretes: Vec<Column>,
     /// Names of the links.
     pub links: Vec<String>,
+    /// The labels of its `rate` transitions. What is left of their hazards are states behind the others, which no output shows.
+    pub hazards: Vec<String>,
     /// Its events.
     pub events: Vec<EventSystem>,
     /// What its random numbers are drawn for, each a stream of its own, by name.
@@ -189,6 +191,16 @@ pub struct Column {
     pub scale: Scale,
     /// Whether it holds a boolean.
     pub boolean: bool,
+}
+
+impl AgentSystem {
+    /// The name of a state, or of what is left of a hazard.
+    pub fn state_name(&self, k: usize) -> String {
+        match self.states.get(k) {
+            Some(column) => column.name.clone(),
+            None => format!("hazard of {}", self.hazards[k - self.states.len()]),
+        }
+    }
 }
 
 /// An event of an agent type.
@@ -436,6 +448,8 @@ pub enum ClaimKind {
     Invariant,
     /// A claim about the model: a violation is reported.
     Assert,
+    /// That a hazard is not negative: a violation ends the run.
+    Rate,
 }
 
 /// A transition of an agent type or an interaction.
@@ -482,6 +496,18 @@ pub enum Trigger {
         /// s.
         period: FunctionId,
         /// None: true.
+        guard: Option<Guard>,
+    },
+    /// When nothing is left of a hazard: of a number drawn on entry and after each firing, from which the hazard is taken
+    /// away while the guard is true.
+    Rate {
+        /// Which hazard of its type.
+        hazard: usize,
+        /// Which stream of random numbers.
+        stream: usize,
+        /// That nothing is left.
+        due: Guard,
+        /// Written to the gate of the hazard. None: true.
         guard: Option<Guard>,
     },
     /// By a message, if the guard holds at its turn.

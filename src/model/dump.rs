@@ -150,6 +150,7 @@ impl<'m> Writer<'m> {
             Trigger::When(guard) => ("", None, Some(*guard)),
             Trigger::After(delay, guard) => (" after ", Some(*delay), *guard),
             Trigger::Every(period, guard) => (" every ", Some(*period), *guard),
+            Trigger::Rate { rate, guard, .. } => (" rate ", Some(*rate), *guard),
             Trigger::On { events, from, guard } => {
                 on = self.heard(events, *from);
                 (on.as_str(), *from, *guard)

@@ -259,6 +259,11 @@ pub struct AgentType {
 }
 
 impl AgentType {
+    /// The `rate` transitions, in order.
+    pub fn rates(&self) -> impl Iterator<Item = &Transition> {
+        self.transitions.iter().filter(|transition| matches!(transition.trigger, Trigger::Rate { .. }))
+    }
+
     /// The name of a variable.
     pub fn variable_name(&self, variable: VarRef) -> &str {
         match variable {
@@ -412,6 +417,15 @@ pub enum Trigger {
     After(ExprId, Option<ExprId>),
     /// `every period (when guard)`.
     Every(ExprId, Option<ExprId>),
+    /// `rate hazard (when guard)`.
+    Rate {
+        /// The hazard, 1/s.
+        rate: ExprId,
+        /// None: true.
+        guard: Option<ExprId>,
+        /// What has to hold: that the hazard is not negative where the guard is true.
+        claim: ExprId,
+    },
     /// `on event (from sender) (when guard)`.
     On {
         /// The events that it hears, by type and number; in order of the types.

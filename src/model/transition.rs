@@ -12,7 +12,7 @@ use super::context::{Context, Home, Scope, Value};
 use super::dimension::Dimension;
 use super::error::{ActionError, ModeError, NameError, TypeError};
 use super::events::Heard;
-use super::ir::{BinderId, ExprKind, ModeId, Transition, Trigger, TypeId};
+use super::ir::{BinderId, ExprId, ExprKind, ModeId, Transition, Trigger, TypeId};
 use super::types::{Slot, Ty};
 use crate::base::Span;
 use crate::math::Op;
@@ -108,7 +108,8 @@ impl<'a> Context<'a> {
                 self.report(ActionError::ModeChange { span: target.span, why, help });
             }
             let alone = match item.trigger.kind {
-                TriggerKind::When | TriggerKind::Rate(_) => None,
+                TriggerKind::When => None,
+                TriggerKind::Rate(_) => Some("rate"),
                 TriggerKind::After(_) => Some("after"),
                 TriggerKind::Every(_) => Some("every"),
                 TriggerKind::On { .. } => Some("on"),
@@ -137,8 +138,11 @@ impl<'a> Context<'a> {
             }
             TriggerKind::When | TriggerKind::After(_) | TriggerKind::Every(_) | TriggerKind::Rate(_) => None,
         };
-        // What an `on` waits for is asked when its message comes, and at no other time: nothing rises or crosses.
-        let edges = if heard.is_some() { Edges::Refused } else { Edges::Allowed };
+        // What an `on` waits for is asked when its message comes, a hazard is there while its guard is true: nothing rises or crosses.
+        let edges = match item.trigger.kind {
+            TriggerKind::On { .. } | TriggerKind::Rate(_) => Edges::Refused,
+            TriggerKind::When | TriggerKind::After(_) | TriggerKind::Every(_) => Edges::Allowed,
+        };
         scope.received = heard.as_ref().map_or(Vec::new(), |heard| heard.received.clone());
         let guard = item.trigger.guard.as_ref().map(|guard| self.guard(&mut scope, guard, edges));
         let condition = guard.as_ref().map(|guard| guard.condition.id);
@@ -153,10 +157,7 @@ impl<'a> Context<'a> {
                     self.duration(&mut scope, period, "a period", "more than 0 s", |period| period > 0.0);
                 Trigger::Every(period.id, condition)
             }
-            TriggerKind::Rate(_) => {
-                self.refuse("`rate` transitions", item.trigger.span);
-                return None;
-            }
+            TriggerKind::Rate(rate) => self.hazard(&mut scope, rate, condition),
             TriggerKind::On { .. } => {
                 let Heard { events, from, .. } = heard?;
                 Trigger::On { events, from, guard: condition }
@@ -200,6 +201,30 @@ impl<'a> Context<'a> {
             self.report(ModeError::BadPeriod { what, needs, span: expr.span, value: seconds });
         }
         value
+    }
+
+    /// A hazard, which is not negative where the guard is true.
+    fn hazard(&mut self, scope: &mut Scope<'a>, expr: &'a ast::Expr, guard: Option<ExprId>) -> Trigger {
+        let per_time = Slot::of(Dimension::ONE).per_time();
+        let rate = self.lower_into(scope, expr, per_time, "a rate");
+        let facts = self.facts[rate.id.index()];
+        if rate.ty != Ty::Wrong && facts.quantified {
+            self.refuse("quantifiers in rates", expr.span);
+        }
+        if rate.ty != Ty::Wrong
+            && facts.closed
+            && let Some(value) = self.evaluate_closed(rate.id)
+            && !(value >= 0.0 && value.is_finite())
+        {
+            self.report(ModeError::BadRate { span: expr.span, value });
+        }
+        let zero = self.number(0.0, Ty::Real, expr.span);
+        let mut claim = self.apply(Op::Le, [zero.id, rate.id], Ty::Bool, expr.span).id;
+        if let Some(guard) = guard {
+            let not = self.apply(Op::Not, [guard], Ty::Bool, expr.span).id;
+            claim = self.apply(Op::Or, [not, claim], Ty::Bool, expr.span).id;
+        }
+        Trigger::Rate { rate: rate.id, guard, claim }
     }
 
     /// A guard. An `exists` that is all of it, or a term of its outermost `and`, gives its agent to the actions.
@@ -262,7 +287,7 @@ impl<'a> Context<'a> {
             self.report(TypeError::Arguments { function, least: 1, most: 1, found, span });
             return self.wrong(span);
         };
-        let (value, kind): (Value, fn(super::ir::ExprId) -> ExprKind) = if name == "rising" {
+        let (value, kind): (Value, fn(ExprId) -> ExprKind) = if name == "rising" {
             (self.lower_condition(scope, arg), ExprKind::Rising)
         } else {
             (self.lower_number(scope, arg, name), ExprKind::Crossing)

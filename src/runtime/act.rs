@@ -84,7 +84,7 @@ impl Engine<'_, '_> {
         let (transition, pair) = match self.guards.definition(instance).origin {
             Origin::Transition(transition) => (transition, false),
             Origin::Pair(pair) => (&pair.transition, true),
-            Origin::Claim(_) => return Ok(Effect::default()),
+            Origin::Gate(_) | Origin::Claim(_) => return Ok(Effect::default()),
         };
         let mut effect = Effect::default();
         if let Some(target) = transition.target
@@ -94,6 +94,7 @@ impl Engine<'_, '_> {
             self.exit(&change, &mut effect)?;
             effect.moves.push(change);
         }
+        self.renew_hazard(transition, slots[0], &mut effect);
         let own = self.guards.roots(instance);
         self.run_list(&transition.actions, slots, &own, &transition.label, &mut effect)?;
         if !effect.exits.is_empty() {
@@ -209,7 +210,7 @@ impl Engine<'_, '_> {
     pub fn action_not_finite(&mut self, write: &Write, blame: Option<Blame>) -> Reason {
         let system = &self.program.types[self.agents.agents[write.agent].ty];
         let variable = match write.target {
-            Target::State(k) => system.states[k].name.clone(),
+            Target::State(k) => system.state_name(k),
             Target::Aux(column) => system.discretes[column - system.layout.discrete(0)].name.clone(),
             Target::Mode => "mode".into(),
         };
@@ -307,7 +308,7 @@ impl Engine<'_, '_> {
     }
 
     /// Ends the past of an agent's group here: its segments are cut, its next step begins afresh.
-    fn restart(&mut self, agent: usize, written: &mut Written) {
+    pub fn restart(&mut self, agent: usize, written: &mut Written) {
         if written.restarted.contains(&agent) {
             return;
         }
@@ -407,7 +408,7 @@ pub fn claims(engine: &Engine<'_, '_>, instance: u32, slots: &Slots) -> Vec<(usi
     let (transition, pair): (&TransitionSystem, bool) = match engine.guards.definition(instance).origin {
         Origin::Transition(transition) => (transition, false),
         Origin::Pair(pair) => (&pair.transition, true),
-        Origin::Claim(_) => return claims,
+        Origin::Gate(_) | Origin::Claim(_) => return claims,
     };
     claims.extend(transition.actions.writes.iter().map(|&(slot, target)| (slots[slot], target)));
     let mut moves = Vec::new();

@@ -24,6 +24,8 @@ pub enum Listing {
 pub enum Origin<'p> {
     /// A transition of an agent type.
     Transition(&'p TransitionSystem),
+    /// The guard of a `rate` transition, which opens the gate of its hazard.
+    Gate(&'p TransitionSystem),
     /// A transition of an interaction.
     Pair(&'p PairTransition),
     /// An invariant or an assert.
@@ -31,12 +33,12 @@ pub enum Origin<'p> {
 }
 
 impl<'p> Origin<'p> {
-    /// The transition, of an agent type or of an interaction; none for a claim.
+    /// The transition that may fire, of an agent type or of an interaction; none for a gate or a claim.
     pub fn transition(self) -> Option<&'p TransitionSystem> {
         match self {
             Origin::Transition(transition) => Some(transition),
             Origin::Pair(pair) => Some(&pair.transition),
-            Origin::Claim(_) => None,
+            Origin::Gate(_) | Origin::Claim(_) => None,
         }
     }
 }
@@ -105,6 +107,10 @@ pub fn definitions<'p>(agents: &Agents<'p>, listing: Listing) -> Vec<Definition<
             let guard = guard_of(transition);
             let origin = Origin::Transition(transition);
             definitions.push(define(agents, origin, ty, transition.source, &transition.frame, guard));
+            if let Some(gate) = gate_of(transition) {
+                let (origin, frame) = (Origin::Gate(transition), &transition.frame);
+                definitions.push(define(agents, origin, ty, transition.source, frame, Some(gate)));
+            }
         }
         for (mode, node) in system.modes.iter().enumerate() {
             for claim in &node.claims {
@@ -141,8 +147,17 @@ pub fn guard_of(transition: &TransitionSystem) -> Option<&Guard> {
     match &transition.trigger {
         Trigger::When(guard) => Some(guard),
         Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
+        Trigger::Rate { due, .. } => Some(due),
         // Asked when a message comes, and not followed.
         Trigger::On { .. } => None,
+    }
+}
+
+/// The condition of a `rate` transition, which is followed too, if it has one.
+pub fn gate_of(transition: &TransitionSystem) -> Option<&Guard> {
+    match &transition.trigger {
+        Trigger::Rate { guard, .. } => guard.as_ref(),
+        Trigger::When(_) | Trigger::After { .. } | Trigger::Every { .. } | Trigger::On { .. } => None,
     }
 }
 

@@ -271,7 +271,7 @@ impl<'p, 'o> Engine<'p, 'o> {
                 match definition.origin {
                     Origin::Transition(transition) => Some((transition.label.clone(), firings)),
                     Origin::Pair(pair) => Some((pair.transition.label.clone(), firings)),
-                    Origin::Claim(_) => None,
+                    Origin::Gate(_) | Origin::Claim(_) => None,
                 }
             });
         let methods =
@@ -360,7 +360,7 @@ impl<'p, 'o> Engine<'p, 'o> {
     /// Label and place in the source of an instance's transition or claim.
     pub fn label(&self, instance: u32) -> (&'p str, Span) {
         match self.guards.definition(instance).origin {
-            Origin::Transition(transition) => (&transition.label, transition.span),
+            Origin::Transition(transition) | Origin::Gate(transition) => (&transition.label, transition.span),
             Origin::Pair(pair) => (&pair.transition.label, pair.transition.span),
             Origin::Claim(claim) => (claim.message.as_deref().unwrap_or("invariant"), claim.span),
         }

@@ -146,7 +146,9 @@ impl Engine<'_, '_> {
         let roots = self.guards.roots(instance);
         let is_claim = matches!(self.guards.definition(instance).origin, Origin::Claim(_));
         let (label, span) = match self.guards.definition(instance).origin {
-            Origin::Transition(transition) => (transition.label.clone(), transition.span),
+            Origin::Transition(transition) | Origin::Gate(transition) => {
+                (transition.label.clone(), transition.span)
+            }
             Origin::Pair(pair) => (pair.transition.label.clone(), pair.transition.span),
             Origin::Claim(claim) => (String::new(), claim.span),
         };

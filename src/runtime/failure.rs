@@ -236,6 +236,17 @@ pub enum Reason {
         /// The transition.
         span: Span,
     },
+    /// A hazard that is negative.
+    NegativeRate {
+        /// Where.
+        place: Place,
+        /// Of which transition.
+        label: String,
+        /// What is compared.
+        compared: Vec<Compared>,
+        /// The transition.
+        span: Span,
+    },
     /// A draw from a distribution whose parameter is out of range.
     BadDraw {
         /// Where.
@@ -352,6 +363,13 @@ impl Reason {
                 place
                     .add_to(with_blame(diagnostic, blame.as_ref()))
                     .help("a delay must be finite and at least 0, a period finite and at least 1e-12 s")
+            }
+            Reason::NegativeRate { place, label, compared, span } => {
+                let title = format!("the rate of `{label}` became negative");
+                let diagnostic = Diagnostic::error("HY0514", title).label(*span, "this transition");
+                place
+                    .add_to(with_compared(diagnostic, compared))
+                    .help("say when the rate counts, `rate ... when ...`, or clamp it: `max(..., 0)`")
             }
             Reason::BadDraw { place, parameter, needs, value, blame, span } => {
                 let title = format!("{parameter} is {}, and has to be {needs}", number_text(*value));

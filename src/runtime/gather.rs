@@ -123,12 +123,14 @@ impl Engine<'_, '_> {
         }
         concerned.sort_unstable();
         concerned.dedup();
-        let mut claims = false;
+        let (mut claims, mut gates) = (false, false);
         for &instance in &concerned {
             if self.enabled(instance) {
                 candidates.push(Candidate { instance, by: By::Guard });
             }
-            claims |= matches!(self.guards.definition(instance).origin, Origin::Claim(_));
+            let origin = self.guards.definition(instance).origin;
+            claims |= matches!(origin, Origin::Claim(_));
+            gates |= matches!(origin, Origin::Gate(_));
         }
         candidates
             .retain(|candidate| candidate.by == By::Guard || self.truths().holds_now(candidate.instance));
@@ -137,6 +139,9 @@ impl Engine<'_, '_> {
         }
         if claims {
             self.judge_claims(&concerned)?;
+        }
+        if gates {
+            self.set_gates(&concerned)?;
         }
         for instance in concerned {
             self.calm(instance);

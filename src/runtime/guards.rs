@@ -371,7 +371,7 @@ fn size(agents: &Agents<'_>, definition: &Definition<'_>) -> u128 {
             let pairs = n * other;
             each * if pair.symmetric { pairs / 2 } else { pairs }
         }
-        Origin::Transition(_) | Origin::Claim(_) => each * n,
+        Origin::Transition(_) | Origin::Gate(_) | Origin::Claim(_) => each * n,
     }
 }
 
@@ -380,7 +380,7 @@ fn size(agents: &Agents<'_>, definition: &Definition<'_>) -> u128 {
 fn for_each_binding(agents: &Agents<'_>, definition: &Definition<'_>, visit: &mut dyn FnMut([u32; 2])) {
     for &first in &agents.of_type[definition.ty] {
         match definition.origin {
-            Origin::Transition(_) | Origin::Claim(_) => visit([first as u32, u32::MAX]),
+            Origin::Transition(_) | Origin::Gate(_) | Origin::Claim(_) => visit([first as u32, u32::MAX]),
             Origin::Pair(pair) => {
                 for &second in &agents.of_type[definition.frame.slots[1].ty()] {
                     if first != second && (!pair.symmetric || first < second) {

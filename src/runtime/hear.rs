@@ -119,12 +119,16 @@ impl Engine<'_, '_> {
         enabled.into_iter().map(|instance| (instance, arming(instance))).collect()
     }
 
-    /// The slots of an `on`, those of its witnesses filled, if its condition holds now.
+    /// The slots of an `on` or of a `rate`, those of its witnesses filled, if its condition holds now.
     pub fn answer(&mut self, instance: u32) -> Option<Slots> {
         let definition = self.guards.definition(instance);
         let transition = definition.origin.transition()?;
         let slots = self.guards.slots(&self.agents, instance);
-        let Trigger::On { guard: Some(guard), .. } = &transition.trigger else { return Some(slots) };
+        let (Trigger::On { guard: Some(guard), .. } | Trigger::Rate { guard: Some(guard), .. }) =
+            &transition.trigger
+        else {
+            return Some(slots);
+        };
         let own = self.guards.roots(instance);
         let question = Question { guard, frame: &transition.frame, own: &own };
         self.ask(&question, slots, &transition.witnesses)

@@ -91,6 +91,7 @@ impl Engine<'_, '_> {
         concerned.sort_unstable();
         concerned.dedup();
         self.judge_claims(&concerned)?;
+        self.set_gates(&concerned)?;
         for &instance in &concerned {
             self.calm(instance);
         }
@@ -152,15 +153,23 @@ impl Engine<'_, '_> {
         Ok((chosen, passed))
     }
 
+    fn is_hazard(&self, instance: u32) -> bool {
+        matches!(self.guards.definition(instance).trigger(), Some(Trigger::Rate { .. }))
+    }
+
     fn rank(&mut self, candidate: Candidate) -> Result<Ranked, Failure> {
         let slots = match candidate.by {
+            By::Guard if self.is_hazard(candidate.instance) => {
+                let slots = self.guards.slots(&self.agents, candidate.instance);
+                self.answer(candidate.instance).unwrap_or(slots)
+            }
             By::Guard | By::Pulse(_) => self.truths().witnesses(candidate.instance),
             By::Message => self.answer(candidate.instance).expect("it has just been asked"),
         };
         let (transition, depth) = match self.guards.definition(candidate.instance).origin {
             Origin::Transition(transition) => (transition, transition.depth),
             Origin::Pair(pair) => (&pair.transition, 0),
-            Origin::Claim(_) => unreachable!("claims are no candidates"),
+            Origin::Gate(_) | Origin::Claim(_) => unreachable!("gates and claims are no candidates"),
         };
         let mut priority = 0.0;
         if let Some(function) = transition.priority {
@@ -354,6 +363,11 @@ impl Engine<'_, '_> {
                     let (place, compared) = (self.place(agent), self.told(instance));
                     let (message, span) = (claim.message.clone(), claim.span);
                     return Err(Reason::InvariantFalse { place, message, compared, span }.into());
+                }
+                ClaimKind::Rate => {
+                    let (place, compared) = (self.place(agent), self.told(instance));
+                    let label = claim.message.clone().unwrap_or_default();
+                    return Err(Reason::NegativeRate { place, label, compared, span: claim.span }.into());
                 }
                 ClaimKind::Assert => {
                     self.guards.instances[instance as usize].armed = false;

@@ -98,7 +98,9 @@ impl Engine<'_, '_> {
         let claims: Vec<u32> = instances
             .filter(|&instance| matches!(self.guards.definition(instance).origin, Origin::Claim(_)))
             .collect();
-        self.judge_claims(&claims)
+        self.judge_claims(&claims)?;
+        let all: Vec<u32> = (0..self.guards.instances.len() as u32).collect();
+        self.set_gates(&all)
     }
 
     /// The modes an agent is in, outer ones first.
@@ -200,7 +202,7 @@ impl Engine<'_, '_> {
     /// The name of a state, and where its equation stands.
     fn equation(&self, agent: usize, state: usize) -> (String, Span) {
         let system = &self.program.types[self.agents.agents[agent].ty];
-        (system.states[state].name.clone(), self.agents.flow(agent).spans[state])
+        (system.state_name(state), self.agents.flow(agent).spans[state])
     }
 
     fn chattering(&mut self, hit: &KinkHit, time: f64) -> Reason {

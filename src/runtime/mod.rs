@@ -19,7 +19,7 @@
 //! | 7 after a reset | only what a write concerns restarts | `act` |
 //! | 8 claims | a false invariant ends the run, a false assert is reported | `instant` |
 //! | 9 events | what is emitted is heard in the next micro-step, one message an agent, in the order of the senders | `mail`, `hear` |
-//! | 11 time | `after` and `every` count from entry, as products | `arm`, `gather` |
+//! | 11 time | `after` and `every` count from entry, as products; hazards are integrated with the flow | `arm`, `gather`, `hazard` |
 //! | 12 end | `until`, `stop`, errors; the state of all at that time | `masim`, `repetition` |
 //! | 13 coupling | who reads another's states in its flow steps with it | `groups` |
 //! | 14 reads across agents | a write wakes the guards that read it, and no others | `arm` |
@@ -71,6 +71,7 @@ mod asked;
 mod act;
 mod send;
 mod arm;
+mod hazard;
 mod near_pairs;
 mod sleep;
 mod hot;

@@ -77,8 +77,11 @@ impl<'p> Agents<'p> {
             }
             let rank = of_type[ty].len();
             of_type[ty].push(number);
-            let segment = Segment::at(0.0, &instance.states);
-            let (states, draws) = (instance.states.clone(), vec![0; system.streams.len()]);
+            let mut states = instance.states.clone();
+            // What is left of hazards is drawn when their transitions are armed.
+            states.resize(system.layout.n_states, 1.0);
+            let segment = Segment::at(0.0, &states);
+            let draws = vec![0; system.streams.len()];
             agents.push(Agent { ty, rank, mode, group: 0, states, aux, draws, segment });
         }
         let mut linked_from = vec![Vec::new(); agents.len()];

@@ -4,6 +4,7 @@ mod rectifier;
 mod stick_slip;
 mod aircraft;
 mod genetic_switch;
+mod poisson_gene;
 mod relay_clock;
 mod navigation;
 mod collide_and_stick;

@@ -15,9 +15,8 @@ pub const COMPARED_MAX: usize = 64;
 pub fn guard(transition: &TransitionSystem) -> Option<&Guard> {
     match &transition.trigger {
         Trigger::When(guard) => Some(guard),
-        Trigger::After { guard, .. } | Trigger::Every { guard, .. } | Trigger::On { guard, .. } => {
-            guard.as_ref()
-        }
+        Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
+        Trigger::On { guard, .. } | Trigger::Rate { guard, .. } => guard.as_ref(),
     }
 }
 
@@ -30,7 +29,7 @@ pub fn plain_guard(transition: &TransitionSystem) -> Option<&Guard> {
             };
             (guard.n_rising == 0 && !guard.atoms.iter().any(crosses)).then_some(guard)
         }
-        Trigger::After { .. } | Trigger::Every { .. } | Trigger::On { .. } => None,
+        Trigger::After { .. } | Trigger::Every { .. } | Trigger::On { .. } | Trigger::Rate { .. } => None,
     }
 }
 

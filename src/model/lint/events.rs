@@ -49,7 +49,7 @@ fn heard(model: &Model) -> FxHashSet<(TypeId, usize)> {
     let triggers = types.flat_map(|(_, ty)| &ty.transitions).map(|transition| &transition.trigger);
     let events = triggers.flat_map(|trigger| match trigger {
         Trigger::On { events, .. } => events.as_slice(),
-        Trigger::When(_) | Trigger::After(..) | Trigger::Every(..) => &[],
+        Trigger::When(_) | Trigger::After(..) | Trigger::Every(..) | Trigger::Rate { .. } => &[],
     });
     events.copied().collect()
 }

@@ -50,7 +50,8 @@ fn transitions(model: &Model) -> impl Iterator<Item = &Transition> {
 fn guard(transition: &Transition) -> Option<ExprId> {
     match transition.trigger {
         Trigger::When(guard) => Some(guard),
-        Trigger::After(_, guard) | Trigger::Every(_, guard) | Trigger::On { guard, .. } => guard,
+        Trigger::After(_, guard) | Trigger::Every(_, guard) => guard,
+        Trigger::On { guard, .. } | Trigger::Rate { guard, .. } => guard,
     }
 }
 

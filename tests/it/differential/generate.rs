@@ -211,8 +211,10 @@ fn transition(
     }
     let mut witness = None;
     let hears = dice.events && dice.percent(40);
+    let hazards = dice.events && dice.percent(25);
     let trigger = match dice.below(10) {
         _ if hears => heard(dice, shapes, shape, &views),
+        _ if hazards => hazard(dice, &views),
         0 => format!("after {} [s]", dice.number(0.2, 1.5)),
         1 => format!("after {} [s] when {}", dice.number(0.2, 1.0), condition(dice, &views, 1)),
         2 => format!("every {} [s]", dice.number(0.3, 1.5)),
@@ -250,6 +252,17 @@ fn transition(
         let _ = write!(text, " {{ {} }}", writes(dice, shape, "", &views, n));
     }
     text.push('\n');
+}
+
+/// What fires at random.
+fn hazard(dice: &mut Dice, views: &[View<'_>]) -> String {
+    let rate = match dice.below(4) {
+        0 => format!("0.3*{}^2", real(dice, &views[0])),
+        1 => format!("1 + 0.8*sin({})", real(dice, &views[0])),
+        _ => dice.number(0.4, 2.5),
+    };
+    let guard = if dice.percent(60) { format!(" when {}", condition(dice, views, 1)) } else { String::new() };
+    format!("rate {rate}{guard}")
 }
 
 /// What waits for a message.

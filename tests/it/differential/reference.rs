@@ -4,6 +4,7 @@
 //! if one may fire, or a branch in a flow went another way, the step is bisected to the earliest such time.
 
 use hyc::math::Op;
+use hyc::math::draw::{Distribution, Key};
 use hyc::model::ir::{
     Action, ExprId, ExprKind, InteractionId, ModeId, Model, Transition, Trigger, TypeId, VarRef,
 };
@@ -67,6 +68,8 @@ struct Instance {
     pulse: bool,
     /// How often its mode has been entered.
     entries: usize,
+    /// How often its hazard has been drawn.
+    draws: u64,
 }
 
 /// The simulator at work.
@@ -140,6 +143,7 @@ impl<'a> Reference<'a> {
             k: 1,
             pulse: false,
             entries: 0,
+            draws: 0,
         };
         let n = world.agents.len();
         for (id, interaction) in model.interactions.iter_enumerated() {
@@ -195,7 +199,7 @@ impl<'a> Reference<'a> {
     /// The next time that a transition is scheduled for.
     fn due(&self, instance: usize) -> Option<f64> {
         let (delay, times) = match self.transition(instance).trigger {
-            Trigger::When(_) | Trigger::On { .. } => return None,
+            Trigger::When(_) | Trigger::On { .. } | Trigger::Rate { .. } => return None,
             Trigger::After(delay, _) => (delay, 1.0),
             Trigger::Every(period, _) => (period, f64::from(self.instances[instance].k)),
         };
@@ -204,12 +208,36 @@ impl<'a> Reference<'a> {
         Some(if (due - self.end).abs() <= 4.0 * f64::EPSILON * self.end { self.end } else { due })
     }
 
+    /// Where what is left of the hazard of a transition stands among the states.
+    fn hazard(&self, world: &World, instance: usize) -> usize {
+        let agent = &world.agents[self.instances[instance].agents[0]];
+        let ty = &self.model.types[agent.ty];
+        let number = self.instances[instance].transition;
+        let before = ty.transitions[..number].iter();
+        let before = before.filter(|transition| matches!(transition.trigger, Trigger::Rate { .. })).count();
+        agent.first + ty.states.len() + before
+    }
+
+    /// Draws what is left of the hazard of a transition anew, if it has one.
+    fn draw(&mut self, instance: usize) {
+        let transition = self.transition(instance);
+        if let Trigger::Rate { .. } = transition.trigger {
+            let place = self.hazard(&self.world, instance);
+            self.instances[instance].draws += 1;
+            let agent = self.model.population.agent_name(self.instances[instance].agents[0]);
+            let draw = self.instances[instance].draws;
+            let key = Key { seed: self.model.run.seed, agent: &agent, variable: &transition.label, draw };
+            self.world.states[place] = Distribution::Exponential.draw(&[1.0], key);
+        }
+    }
+
     /// The condition of a transition in a world of these modes.
     fn holds(&self, world: &World, instance: usize) -> bool {
         let (guard, ripe) = match self.transition(instance).trigger {
             Trigger::When(guard) => (Some(guard), true),
             Trigger::After(_, guard) => (guard, self.due(instance).is_some_and(|due| world.time >= due)),
             Trigger::Every(_, guard) => (guard, self.instances[instance].pulse),
+            Trigger::Rate { .. } => return world.states[self.hazard(world, instance)] <= 0.0,
             Trigger::On { .. } => return false,
         };
         let Some(guard) = guard else { return ripe };
@@ -223,7 +251,7 @@ impl<'a> Reference<'a> {
     fn enabled(&self, world: &World, instance: usize) -> bool {
         let armed = match self.transition(instance).trigger {
             Trigger::Every(..) => self.instances[instance].pulse,
-            Trigger::When(_) | Trigger::After(..) => self.instances[instance].armed,
+            Trigger::When(_) | Trigger::After(..) | Trigger::Rate { .. } => self.instances[instance].armed,
             Trigger::On { .. } => return false,
         };
         armed && self.is_active(instance) && self.holds(world, instance)
@@ -248,6 +276,11 @@ impl<'a> Reference<'a> {
             }
             self.write(&done.writes);
             self.send(done.sent);
+        }
+        for instance in 0..self.instances.len() {
+            if self.is_active(instance) {
+                self.draw(instance);
+            }
         }
         self.arm();
         self.instant()
@@ -420,7 +453,10 @@ impl<'a> Reference<'a> {
         (0..self.instances.len()).filter(|instance| self.is_active(*instance)).any(|instance| {
             let condition = match self.transition(instance).trigger {
                 Trigger::When(guard) | Trigger::After(_, Some(guard)) => guard,
-                Trigger::After(_, None) | Trigger::Every(..) | Trigger::On { .. } => return false,
+                Trigger::After(_, None)
+                | Trigger::Every(..)
+                | Trigger::On { .. }
+                | Trigger::Rate { .. } => return false,
             };
             let (agents, pair) = (self.instances[instance].agents, self.is_pair(instance));
             point::Guard { model: self.model, agents, pair, condition }.hangs_on_a_point(&self.world, end)
@@ -472,7 +508,10 @@ impl<'a> Reference<'a> {
                 let scope = self.scope(&self.world, instance);
                 self.is_active(instance) && self.instances[instance].boundary.is_left_open(scope, guard)
             }
-            Trigger::After(_, None) | Trigger::Every(_, None) | Trigger::On { .. } => false,
+            Trigger::After(_, None)
+            | Trigger::Every(_, None)
+            | Trigger::On { .. }
+            | Trigger::Rate { .. } => false,
         };
         piled_up || (0..self.instances.len()).any(stays)
     }
@@ -536,7 +575,8 @@ impl<'a> Reference<'a> {
         if let Trigger::When(guard)
         | Trigger::After(_, Some(guard))
         | Trigger::Every(_, Some(guard))
-        | Trigger::On { guard: Some(guard), .. } = transition.trigger
+        | Trigger::On { guard: Some(guard), .. }
+        | Trigger::Rate { guard: Some(guard), .. } = transition.trigger
         {
             self.bind_witnesses(guard, transition, &mut scope);
         }
@@ -617,6 +657,9 @@ impl<'a> Reference<'a> {
                 (instance.armed, instance.k, instance.pulse) = (true, 1, false);
                 instance.entries += 1;
             }
+            if entered || fired && self.is_active(instance) {
+                self.draw(instance);
+            }
             if fired || entered {
                 self.instances[instance].boundary = self.settle(instance);
             }
@@ -628,7 +671,10 @@ impl<'a> Reference<'a> {
     fn settle(&self, instance: usize) -> Boundary {
         let guard = match self.transition(instance).trigger {
             Trigger::When(guard) | Trigger::After(_, Some(guard)) => guard,
-            Trigger::After(_, None) | Trigger::Every(..) | Trigger::On { .. } => return Boundary::default(),
+            Trigger::After(_, None)
+            | Trigger::Every(..)
+            | Trigger::On { .. }
+            | Trigger::Rate { .. } => return Boundary::default(),
         };
         Boundary::settle(self.scope(&self.world, instance), &self.world, guard)
     }

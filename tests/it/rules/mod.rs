@@ -12,6 +12,7 @@ mod rule_07_reset;
 mod rule_08_claims;
 mod rule_09_events;
 mod rule_11_time;
+mod rule_11_rate;
 mod rule_12_end;
 mod rule_13_coupling;
 mod rule_14_wakes;
