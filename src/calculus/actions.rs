@@ -58,7 +58,7 @@ fn steps(
                 otherwise: self::steps(draft, scope, otherwise, name)?,
             },
             Action::Goto { participant, target, span } => {
-                ActionStep::Goto { slot: *participant, target: target.index(), span: *span }
+                ActionStep::Goto { slot: *participant, target: *target, span: *span }
             }
             Action::Stop { reason, span } => ActionStep::Stop { reason: reason.clone(), span: *span },
         });

@@ -16,7 +16,8 @@ use crate::calculus::system::{
     LetSystem, LetValue, ModeSystem, PairTransition, Relation, Sender, TransitionSystem, Trigger,
 };
 use crate::model::ir::{
-    self, Action, Claim, ExprId, Interaction, Let, Mode, ModeId, Transition, Type, TypeId,
+    self, Action, Claim, Destination, ExprId, Inside, Interaction, Let, Mode, ModeId, Transition, Type,
+    TypeId,
 };
 
 /// The names and places of all modes, which listings need before there are equations.
@@ -27,7 +28,9 @@ pub fn mode_tree(draft: &mut Draft) {
             path: declared.path.clone(),
             parent: declared.parent.map(ModeId::index),
             depth: declared.depth,
-            initial_leaf: initial_leaf(ty, mode).index(),
+            initial: declared.initial.map(ModeId::index),
+            history: None,
+            active: if declared.children.is_empty() { active(ty, mode) } else { Vec::new() },
             flow: None,
             claims: Vec::new(),
             entry: ActionList::default(),
@@ -38,11 +41,51 @@ pub fn mode_tree(draft: &mut Draft) {
     }
 }
 
-fn initial_leaf(ty: &ir::AgentType, mut mode: ModeId) -> ModeId {
-    while let Some(child) = ty.modes[mode].initial {
-        mode = child;
+/// A mode and those around it, outer first.
+fn active(ty: &ir::AgentType, mode: ModeId) -> Vec<usize> {
+    let around = std::iter::successors(Some(mode), |&mode| ty.modes[mode].parent);
+    let mut active: Vec<usize> = around.map(ModeId::index).collect();
+    active.reverse();
+    active
+}
+
+/// Columns for the modes to whose history something leads.
+pub fn histories(draft: &mut Draft) {
+    for (id, ty) in draft.model.types.iter_enumerated() {
+        let own = ty.transitions.iter().filter_map(|transition| transition.target);
+        let mut targets: Vec<Destination> = own.collect();
+        for interaction in draft.model.interactions.iter() {
+            for transition in &interaction.transitions {
+                destinations(&transition.actions, &mut |participant, target| {
+                    if interaction.types[participant] == id {
+                        targets.push(target);
+                    }
+                });
+            }
+        }
+        let system = &mut draft.types[id.index()];
+        for target in targets.into_iter().filter(|target| target.inside == Inside::History) {
+            let mode = &mut system.modes[target.mode.index()];
+            if mode.history.is_none() {
+                mode.history = Some(system.layout.history(system.layout.n_histories));
+                system.layout.n_histories += 1;
+            }
+        }
     }
-    mode
+}
+
+/// Calls `visit` with every change of mode in some actions.
+fn destinations(list: &[Action], visit: &mut dyn FnMut(usize, Destination)) {
+    for action in list {
+        match action {
+            Action::Goto { participant, target, .. } => visit(*participant, *target),
+            Action::If { then, otherwise, .. } => {
+                destinations(then, visit);
+                destinations(otherwise, visit);
+            }
+            Action::Assign { .. } | Action::Draw { .. } | Action::Emit { .. } | Action::Stop { .. } => {}
+        }
+    }
 }
 
 /// Flows of all leaves; then every type has as many locks as the leaf that needs most.
@@ -193,7 +236,7 @@ fn transition(
         declaration: 0,
         priority,
         trigger,
-        target: declared.target.map(ModeId::index),
+        target: declared.target,
         actions,
         frame,
         witnesses,

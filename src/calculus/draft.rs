@@ -121,6 +121,7 @@ fn columns(model: &Model, ty: &AgentType) -> AgentSystem {
             n_discretes: ty.discretes.len(),
             n_links: ty.links.len(),
             n_received: n_received(model, ty),
+            n_histories: 0,
             n_locks: 0,
         },
         states: ty.states.iter().map(column).collect(),

@@ -7,9 +7,9 @@ use std::fmt::Write;
 use crate::calculus::graph::NodeId;
 use crate::calculus::print::{self, Names, Sheet};
 use crate::calculus::system::{
-    ActionStep, AgentSystem, Atom, ClaimKind, Column, Condition, Flow, Frame, FunctionId, Guard, KinkKind,
-    LetValue, ModeSystem, Near, PairTransition, Quantified, Sender, System, Target, TransitionSystem,
-    Trigger,
+    ActionStep, AgentSystem, Atom, ClaimKind, Column, Condition, Destination, Flow, Frame, FunctionId, Guard,
+    KinkKind, LetValue, ModeSystem, Near, PairTransition, Quantified, Sender, System, Target,
+    TransitionSystem, Trigger,
 };
 
 /// The whole system as text; the same for the same system.
@@ -79,6 +79,10 @@ fn agent(system: &System, ty: &AgentSystem, out: &mut String) {
         self::transition(system, transition, ty, head, None, out);
     }
     out.push('\n');
+}
+
+fn destination(ty: &AgentSystem, target: Destination) -> String {
+    format!("{}{}", ty.modes[target.mode.index()].path, target.suffix())
 }
 
 fn mode(system: &System, ty: &AgentSystem, mode: &ModeSystem, out: &mut String) {
@@ -186,7 +190,7 @@ fn transition(
     }
     block.add_steps(&transition.actions.steps);
     let sheet = block.sheet();
-    let target = transition.target.map_or(String::new(), |target| format!(" -> {}", ty.modes[target].path));
+    let target = transition.target.map_or(String::new(), |target| format!(" -> {}", destination(ty, target)));
     block.line(2, format!("{head}{target}"));
     if let Some(time) = time {
         block.line(4, format!("{word} {}", block.value(&sheet, time)));
@@ -433,7 +437,7 @@ impl<'a> Block<'a> {
                 }
                 ActionStep::Goto { slot, target, .. } => {
                     let slot = &self.names.frame.slots[*slot];
-                    let mode = &self.names.types[slot.ty()].modes[*target].path;
+                    let mode = destination(&self.names.types[slot.ty()], *target);
                     self.line(indent, format!("{} -> {mode}", slot.name()));
                 }
                 ActionStep::Stop { reason, .. } => {

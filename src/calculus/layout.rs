@@ -2,8 +2,9 @@
 
 /// The columns of an agent type.
 ///
-/// Auxiliary columns in order: number, mode, time of entry, parameters, discretes, links, what a message carries, gates, locks. Numbers of agents are
-/// held as reals, -1 for none. A lock holds the branch that a kink of the flow has taken (rule 15).
+/// Auxiliary columns in order: number, mode, time of entry, parameters, discretes, links, what a message carries, gates, histories, locks. Numbers
+/// of agents are held as reals, -1 for none. A history holds the number of a mode: the submode that was active last. A lock holds the branch that
+/// a kink of the flow has taken (rule 15).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
     /// How many states, hazards included.
@@ -19,6 +20,8 @@ pub struct Layout {
     pub n_links: usize,
     /// How many values the messages carry that it hears (the most that any event does).
     pub n_received: usize,
+    /// How many modes remember which of their submodes was active last.
+    pub n_histories: usize,
     /// How many locks (the most that any mode needs).
     pub n_locks: usize,
 }
@@ -53,11 +56,15 @@ impl Layout {
     }
     /// Column of the gate of hazard k.
     pub fn gate(&self, k: usize) -> usize {
-        3 + self.n_params + self.n_discretes + self.n_links + self.n_received + k
+        self.received(self.n_received) + k
+    }
+    /// Column of history k.
+    pub fn history(&self, k: usize) -> usize {
+        self.gate(self.n_hazards) + k
     }
     /// Column of lock k.
     pub fn lock(&self, k: usize) -> usize {
-        self.gate(self.n_hazards) + k
+        self.history(self.n_histories) + k
     }
     /// How many auxiliary columns there are.
     pub fn n_aux(&self) -> usize {

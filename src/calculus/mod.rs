@@ -52,6 +52,7 @@ use crate::model::ir::Model;
 pub fn derive(model: &Model) -> Result<System, Vec<Diagnostic>> {
     let mut draft = Draft::new(model);
     agents::mode_tree(&mut draft);
+    agents::histories(&mut draft);
     agents::flows(&mut draft);
     agents::modes(&mut draft);
     agents::transitions(&mut draft);

@@ -47,10 +47,7 @@ impl<'s> Reader<'s> {
 
     /// From now on the agent itself is in a mode, or inside it.
     pub fn stay_in(&mut self, modes: &[ModeSystem], mode: usize) {
-        let is_inside = |leaf: usize| {
-            std::iter::successors(Some(leaf), |&id| modes[id].parent).any(|around| around == mode)
-        };
-        let leaves = (0..modes.len()).filter(|&leaf| modes[leaf].flow.is_some() && is_inside(leaf));
+        let leaves = (0..modes.len()).filter(|&leaf| modes[leaf].active.contains(&mode));
         let hull = leaves.map(|leaf| Interval::point(leaf as f64)).reduce(Interval::hull);
         if let Some(hull) = hull {
             self.bound(Node::Aux { slot: 0, column: Layout::MODE as u32 }, hull);

@@ -93,7 +93,9 @@ impl<'a> Former<'a> {
                 parts.extend(guard.as_ref().map(|guard| self.guard(guard)));
                 parts
             }
-            Trigger::On { .. } | Trigger::Rate { .. } => unreachable!("the model refuses these in interactions"),
+            Trigger::On { .. } | Trigger::Rate { .. } => {
+                unreachable!("the model refuses these in interactions")
+            }
         };
         if let Some(priority) = transition.priority {
             let priority = self.function(priority);
@@ -131,9 +133,11 @@ impl<'a> Former<'a> {
                 let parts = vec![self.guard(condition), self.steps(then), self.steps(otherwise)];
                 self.part("if", Vec::new(), parts)
             }
-            ActionStep::Goto { slot, target, .. } => {
-                self.part("goto", vec![self.places[*slot], *target], Vec::new())
-            }
+            ActionStep::Goto { slot, target, .. } => self.part(
+                "goto",
+                vec![self.places[*slot], target.mode.index(), target.inside as usize],
+                Vec::new(),
+            ),
             ActionStep::Stop { reason, .. } => {
                 let reason = self.id(Form::Text(reason.clone()));
                 self.part("stop", Vec::new(), vec![reason])

@@ -18,7 +18,9 @@ pub use crate::calculus::range::{Near, Range};
 pub use crate::calculus::relation::Relation;
 use crate::math::Scale;
 pub use crate::math::draw::Distribution;
-pub use crate::model::ir::{Aggregate, Block, Instance, Integrator, Population, Record, Run, VarRef};
+pub use crate::model::ir::{
+    Aggregate, Block, Destination, Inside, Instance, Integrator, Population, Record, Run, VarRef,
+};
 
 /// Names a [`Function`].
 pub type FunctionId = Idx<Function>;
@@ -182,6 +184,18 @@ pub struct AgentSystem {
     pub transitions: Vec<TransitionSystem>,
 }
 
+impl AgentSystem {
+    /// A mode and those around it, inner first.
+    pub fn around(&self, mode: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::successors(Some(mode), |&mode| self.modes[mode].parent)
+    }
+
+    /// Whether a mode is another one, or inside it.
+    pub fn is_inside(&self, mode: usize, other: usize) -> bool {
+        self.around(mode).any(|around| around == other)
+    }
+}
+
 /// A named column with its unit for output.
 #[derive(Clone, Debug)]
 pub struct Column {
@@ -245,8 +259,12 @@ pub struct ModeSystem {
     pub parent: Option<usize>,
     /// 0 for the root.
     pub depth: usize,
-    /// The leaf that is entered when this mode is (itself, for a leaf).
-    pub initial_leaf: usize,
+    /// The submode that is entered by default; none for a leaf.
+    pub initial: Option<usize>,
+    /// The auxiliary column that remembers which submode was active last; only where a `M.history` needs it.
+    pub history: Option<usize>,
+    /// For a leaf, the modes that are active in it, outer first: the root, ..., itself.
+    pub active: Vec<usize>,
     /// The equations of a leaf.
     pub flow: Option<Flow>,
     /// Invariants and asserts declared in this mode, without those of enclosing modes.
@@ -467,8 +485,8 @@ pub struct TransitionSystem {
     pub priority: Option<FunctionId>,
     /// When it fires.
     pub trigger: Trigger,
-    /// The mode it leads to, as written.
-    pub target: Option<usize>,
+    /// Where it leads.
+    pub target: Option<Destination>,
     /// What it does; shares the transition's frame.
     pub actions: ActionList,
     /// The agents that guard, priority and actions read.
@@ -607,8 +625,8 @@ pub enum ActionStep {
     Goto {
         /// Who.
         slot: usize,
-        /// Into which mode, as written.
-        target: usize,
+        /// Into which mode.
+        target: Destination,
         /// Where it stands.
         span: Span,
     },

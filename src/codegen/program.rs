@@ -6,9 +6,9 @@ use crate::calculus::system::Function;
 pub use crate::calculus::system::FunctionId;
 pub use crate::calculus::system::{
     ActionList, ActionStep, AgentSystem, Aggregate, Atom, ClaimKind, ClaimSystem, Column, Condition,
-    Distribution, Flow, Fold, Frame, Guard, Integrator, InteractionSystem, Jumps, Kink, KinkKind, Layout,
-    LetSystem, LetValue, ModeSystem, Near, PairTransition, Population, Quantified, Range, Record, Relation,
-    Run, Sender, Slot, Target, Term, TransitionSystem, Trigger, VarRef,
+    Destination, Distribution, Flow, Fold, Frame, Guard, Inside, Integrator, InteractionSystem, Jumps, Kink,
+    KinkKind, Layout, LetSystem, LetValue, ModeSystem, Near, PairTransition, Population, Quantified, Range,
+    Record, Relation, Run, Sender, Slot, Target, Term, TransitionSystem, Trigger, VarRef,
 };
 use crate::codegen::kernel::{Kernel, StepKernel};
 use crate::codegen::series::SeriesTape;

@@ -209,7 +209,7 @@ impl<'a> Context<'a> {
             return None;
         };
         let (which, ty) = self.participant(number, participant)?;
-        let target = self.resolve_mode(ty, super::ir::ModeId::new(0), target)?;
+        let target = self.resolve_destination(ty, super::ir::ModeId::new(0), target)?;
         self.mark_written(written, (which, None), &format!("{} ->", participant.text), span);
         Some(Action::Goto { participant: which, target, span })
     }

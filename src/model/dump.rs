@@ -171,7 +171,10 @@ impl<'m> Writer<'m> {
         if let Some(ty) = ty {
             let path = |mode: ModeId| if mode.index() == 0 { "*" } else { ty.modes[mode].path.as_str() };
             match item.target {
-                Some(target) => text.push_str(&format!(" [{} -> {}]", path(item.source), path(target))),
+                Some(target) => {
+                    let (from, to) = (path(item.source), path(target.mode));
+                    text.push_str(&format!(" [{from} -> {to}{}]", target.suffix()));
+                }
                 None => text.push_str(&format!(" [{}]", path(item.source))),
             }
         }
@@ -237,8 +240,9 @@ impl<'m> Writer<'m> {
                 }
                 Action::Goto { participant, target, .. } => {
                     let Some(pair) = names.pair else { continue };
-                    let path = &self.model.types[pair.types[*participant]].modes[*target].path;
-                    self.line(depth, &format!("{} -> {path}", pair.participants[*participant]));
+                    let path = &self.model.types[pair.types[*participant]].modes[target.mode].path;
+                    let name = &pair.participants[*participant];
+                    self.line(depth, &format!("{name} -> {path}{}", target.suffix()));
                 }
                 Action::Stop { reason, .. } => {
                     let reason = reason.as_ref().map_or(String::new(), |text| format!(" \"{text}\""));

@@ -264,6 +264,11 @@ impl AgentType {
         self.transitions.iter().filter(|transition| matches!(transition.trigger, Trigger::Rate { .. }))
     }
 
+    /// Whether a mode is another one, or inside it.
+    pub fn is_inside(&self, mode: ModeId, other: ModeId) -> bool {
+        std::iter::successors(Some(mode), |&mode| self.modes[mode].parent).any(|around| around == other)
+    }
+
     /// The name of a variable.
     pub fn variable_name(&self, variable: VarRef) -> &str {
         match variable {
@@ -398,14 +403,42 @@ pub struct Transition {
     pub trigger: Trigger,
     /// Higher first; 0 if not given.
     pub priority: Option<ExprId>,
-    /// The mode it leads to, as written (its initial submode is found at run time).
-    pub target: Option<ModeId>,
+    /// Where it leads.
+    pub target: Option<Destination>,
     /// What it does.
     pub actions: Vec<Action>,
     /// Agents bound by the guard's outermost `exists` that the actions may name.
     pub witnesses: Vec<BinderId>,
     /// Where it stands.
     pub span: Span,
+}
+
+/// Where a change of mode leads: a mode as it is written, and what is entered inside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Destination {
+    /// The mode.
+    pub mode: ModeId,
+    /// Which of its submodes.
+    pub inside: Inside,
+}
+
+impl Destination {
+    /// What stands behind the mode's path: nothing, or `.history`.
+    pub fn suffix(self) -> &'static str {
+        match self.inside {
+            Inside::Initial => "",
+            Inside::History => ".history",
+        }
+    }
+}
+
+/// Which submode of a mode is entered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Inside {
+    /// The initial one.
+    Initial,
+    /// `M.history`: the one that was active last, at *its* initial one; the initial one if the mode was never active.
+    History,
 }
 
 /// What makes a transition fire.
@@ -491,7 +524,7 @@ pub enum Action {
         /// Which participant.
         participant: usize,
         /// Into which mode.
-        target: ModeId,
+        target: Destination,
         /// Where it stands.
         span: Span,
     },

@@ -58,9 +58,6 @@ impl<'a> Context<'a> {
         if let Some(&first) = twins.get(item.name.text.as_str()) {
             self.report(NameError::Taken { name: path.clone(), span: item.name.span, first });
         }
-        if depth == 2 {
-            self.refuse("modes inside modes", item.span);
-        }
         let id = self.model.types[ty].modes.push(Mode {
             name: item.name.text.clone(),
             path,

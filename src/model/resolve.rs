@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use super::context::{Context, Global, GlobalKind, Home, Meaning, Member, Scope, Value};
-use super::error::{NameError, TypeError};
-use super::ir::{ExprKind, ModeId, TypeId};
+use super::error::{ModeError, NameError, TypeError};
+use super::ir::{Destination, ExprKind, Inside, ModeId, TypeId};
 use super::suggest::closest;
 use super::types::Ty;
 use crate::base::Span;
@@ -302,10 +302,6 @@ impl<'a> Context<'a> {
     /// The mode that a path names when it is written in mode `from`: the first name is looked up there, then in the
     /// modes around it. None, and a diagnostic, if there is none.
     pub fn resolve_mode(&mut self, ty: TypeId, from: ModeId, target: &ast::Target) -> Option<ModeId> {
-        if let Some(span) = target.history {
-            self.refuse("`history` targets", span);
-            return None;
-        }
         let modes = &self.model.types[ty].modes;
         let child = |of: ModeId, name: &str| {
             modes[of].children.iter().copied().find(|&child| modes[child].name == name)
@@ -328,6 +324,24 @@ impl<'a> Context<'a> {
             inside = next;
         }
         Some(inside)
+    }
+
+    /// Where a change of mode leads that is written in mode `from`.
+    pub fn resolve_destination(
+        &mut self,
+        ty: TypeId,
+        from: ModeId,
+        target: &ast::Target,
+    ) -> Option<Destination> {
+        let mode = self.resolve_mode(ty, from, target)?;
+        let Some(span) = target.history else { return Some(Destination { mode, inside: Inside::Initial }) };
+        let item = &self.model.types[ty].modes[mode];
+        if item.children.is_empty() {
+            let (path, declared) = (item.path.clone(), item.span);
+            self.report(ModeError::NoHistory { path, declared, span });
+            return None;
+        }
+        Some(Destination { mode, inside: Inside::History })
     }
 
     fn unknown_mode(&mut self, ty: TypeId, inside: ModeId, name: &ast::Name) {

@@ -63,7 +63,7 @@ impl<'a> Context<'a> {
         let mut labels = Labels { owner: self.model.types[ty].name.clone(), ..Labels::default() };
         for (mode, ordinal, item) in items {
             let target = match &item.target {
-                Some(path) => match self.resolve_mode(ty, mode, path) {
+                Some(path) => match self.resolve_destination(ty, mode, path) {
                     Some(target) => Some(target),
                     None => {
                         self.transition(Home::Agent(ty, mode), mode, item);
@@ -75,8 +75,8 @@ impl<'a> Context<'a> {
             let Some(transition) = self.transition(Home::Agent(ty, mode), mode, item) else { continue };
             let modes = &self.model.types[ty].modes;
             let source = if mode.index() == 0 { "*" } else { &modes[mode].name };
-            let target_name = target.map(|target| modes[target].name.as_str());
-            let label = labels.name(item, source, target_name, ordinal);
+            let target_name = target.map(|target| format!("{}{}", modes[target.mode].name, target.suffix()));
+            let label = labels.name(item, source, target_name.as_deref(), ordinal);
             let label = self.take_label(label);
             self.model.types[ty].transitions.push(Transition { label, target, ..transition });
         }

@@ -3,7 +3,9 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::base::Span;
-use crate::codegen::program::{ActionList, ActionStep, Frame, FunctionId, Layout, Target, TransitionSystem};
+use crate::codegen::program::{
+    ActionList, ActionStep, Destination, Frame, FunctionId, Layout, Target, TransitionSystem,
+};
 use crate::codegen::trace::{Blame, Point};
 use crate::runtime::advance::cut;
 use crate::runtime::engine::{Engine, StopRequest};
@@ -13,6 +15,7 @@ use crate::runtime::guards::Origin;
 use crate::runtime::mail::Message;
 use crate::runtime::population::Slots;
 use crate::runtime::present::Depth;
+use crate::runtime::route::{Move, remember, route};
 use crate::runtime::truth;
 
 /// A value for a column of an agent.
@@ -26,21 +29,6 @@ pub struct Write {
     pub value: f64,
     /// The assignment.
     pub span: Span,
-}
-
-/// A change of mode of one agent.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Move {
-    /// Who.
-    pub agent: usize,
-    /// The leaf it is in.
-    pub from: usize,
-    /// The leaf it goes to.
-    pub to: usize,
-    /// The modes left, inner first.
-    pub left: Vec<usize>,
-    /// The modes entered, outer first.
-    pub entered: Vec<usize>,
 }
 
 /// All that one firing does, computed before anything is written.
@@ -105,22 +93,10 @@ impl Engine<'_, '_> {
         Ok(effect)
     }
 
-    /// The change of mode of an agent by a transition from `source` to `target`.
-    fn route(&self, agent: usize, source: usize, target: usize) -> Move {
-        let modes = &self.program.types[self.agents.agents[agent].ty].modes;
-        let above = |mode: usize| std::iter::successors(Some(mode), |&mode| modes[mode].parent);
-        let scope = if source == 0 {
-            0
-        } else {
-            let outside: Vec<usize> = above(source).skip(1).collect();
-            above(target).skip(1).find(|mode| outside.contains(mode)).unwrap_or(0)
-        };
-        let from = self.agents.agents[agent].mode;
-        let to = modes[target].initial_leaf;
-        let left = above(from).take_while(|&mode| mode != scope).collect();
-        let mut entered: Vec<usize> = above(to).take_while(|&mode| mode != scope).collect();
-        entered.reverse();
-        Move { agent, from, to, left, entered }
+    /// The change of mode of an agent by a transition of mode `source`.
+    fn route(&self, agent: usize, source: usize, target: Destination) -> Move {
+        let row = &self.agents.agents[agent];
+        route(&self.program.types[row.ty], (agent, &row.aux), row.mode, source, target)
     }
 
     fn exit(&mut self, change: &Move, effect: &mut Effect) -> Result<(), Failure> {
@@ -295,6 +271,7 @@ impl Engine<'_, '_> {
         agent.mode = change.to;
         agent.aux[Layout::MODE] = change.to as f64;
         agent.aux[Layout::ENTRY] = time;
+        remember(&self.program.types[agent.ty], &change.entered, &mut agent.aux);
     }
 
     /// Keeps an agent's rows as they were before this micro-step.
@@ -432,7 +409,7 @@ pub fn claims(engine: &Engine<'_, '_>, instance: u32, slots: &Slots) -> Vec<(usi
 }
 
 /// Calls `visit` with every change of mode in some actions.
-fn gotos(steps: &[ActionStep], visit: &mut dyn FnMut(usize, usize)) {
+fn gotos(steps: &[ActionStep], visit: &mut dyn FnMut(usize, Destination)) {
     for step in steps {
         match step {
             ActionStep::Goto { slot, target, .. } => visit(*slot, *target),

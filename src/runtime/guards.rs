@@ -6,7 +6,7 @@
 
 use smallvec::SmallVec;
 
-use crate::codegen::program::{Atom, Layout, Quantified, Range, Relation, Trigger};
+use crate::codegen::program::{Atom, Quantified, Range, Relation, Trigger};
 use crate::runtime::definition::{AtomShape, Definition, definitions};
 pub use crate::runtime::definition::{Listing, Origin};
 use crate::runtime::population::{Agents, Slots};
@@ -348,17 +348,9 @@ pub fn allowed(quantified: &Quantified, roots: &[usize], agent: usize) -> bool {
     !(quantified.other && roots.contains(&agent))
 }
 
-/// Whether an agent's (leaf) mode is `mode` or inside it.
+/// Whether an agent is in a mode, or inside it.
 pub fn inside(agents: &Agents<'_>, agent: usize, mode: usize) -> bool {
-    let modes = &agents.program.types[agents.agents[agent].ty].modes;
-    let mut at = Some(agents.agents[agent].aux[Layout::MODE] as usize);
-    while let Some(number) = at {
-        if number == mode {
-            return true;
-        }
-        at = modes[number].parent;
-    }
-    false
+    agents.mode(agent).active.contains(&mode)
 }
 
 /// How many entries the instances of a definition take: themselves and their atoms.

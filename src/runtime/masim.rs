@@ -83,9 +83,8 @@ impl Engine<'_, '_> {
         for group in self.groups.divide(&mut self.agents, &all, 0.0, &|_| None) {
             self.queue_clock(group);
         }
-        let entered: Vec<Vec<usize>> = all.iter().map(|&agent| self.modes_of(agent)).collect();
         let entries: Vec<(usize, &[usize])> =
-            all.iter().zip(&entered).map(|(&agent, modes)| (agent, &modes[..])).collect();
+            all.iter().map(|&agent| (agent, self.agents.mode(agent).active.as_slice())).collect();
         self.run_entries(&entries, &mut written)?;
         self.set_locks(written.restarted.iter().copied());
         self.recorder.begin(&self.agents, &mut self.present, self.observer)?;
@@ -101,15 +100,6 @@ impl Engine<'_, '_> {
         self.judge_claims(&claims)?;
         let all: Vec<u32> = (0..self.guards.instances.len() as u32).collect();
         self.set_gates(&all)
-    }
-
-    /// The modes an agent is in, outer ones first.
-    fn modes_of(&self, agent: usize) -> Vec<usize> {
-        let modes = &self.program.types[self.agents.agents[agent].ty].modes;
-        let above = std::iter::successors(Some(self.agents.agents[agent].mode), |&mode| modes[mode].parent);
-        let mut inside: Vec<usize> = above.collect();
-        inside.reverse();
-        inside
     }
 
     /// The end: the last rows, and the state of every agent at T (rule 12).

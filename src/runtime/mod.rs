@@ -43,6 +43,7 @@ pub mod observe;
 mod leap;
 mod herd;
 mod cold;
+mod route;
 mod population;
 mod present;
 mod groups;

@@ -7,6 +7,7 @@ use smallvec::SmallVec;
 
 use crate::codegen::program::{Flow, Frame, Layout, ModeSystem, Program, Slot};
 use crate::runtime::cold::Cold;
+use crate::runtime::route::begin_histories;
 use crate::runtime::solve::segment::Segment;
 
 /// No agent: what a slot holds whose link is `none`.
@@ -64,7 +65,7 @@ impl<'p> Agents<'p> {
         for (number, instance) in program.population.agents.iter().enumerate() {
             let ty = instance.ty.index();
             let system = &program.types[ty];
-            let mode = system.modes[instance.mode.index()].initial_leaf;
+            let mode = instance.mode.index();
             let mut aux = vec![0.0; system.layout.n_aux()];
             aux[Layout::NUMBER] = number as f64;
             aux[Layout::MODE] = mode as f64;
@@ -75,6 +76,7 @@ impl<'p> Agents<'p> {
             for (column, value) in aux[first..].iter_mut().zip(columns) {
                 *column = value;
             }
+            begin_histories(system, mode, &mut aux);
             let rank = of_type[ty].len();
             of_type[ty].push(number);
             let mut states = instance.states.clone();

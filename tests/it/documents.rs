@@ -69,7 +69,7 @@ fn every_sample_of_the_reference_is_sound() {
 #[test]
 fn what_the_reference_calls_refused_is_refused_as_not_supported_yet() {
     let mut samples = fenced(&document("docs/LANGUAGE.md"), "hy refused");
-    assert!(samples.len() >= 3);
+    assert!(!samples.is_empty());
     samples.extend(fenced(&document("docs/PAPER.md"), "hy refused"));
     for sample in samples {
         let (sources, diagnostics) = diagnose(&sample);
@@ -85,15 +85,23 @@ fn what_the_reference_calls_refused_is_refused_as_not_supported_yet() {
 
 #[test]
 fn the_machine_of_the_paper_page_goes_on_with_what_it_did() {
-    let sample = fenced(&document("docs/PAPER.md"), "hy").remove(0);
-    let run = simulate(&sample);
-    let steps: Vec<(f64, &str)> = (run.events.iter().filter(|event| event.agent == "machine"))
-        .map(|event| (event.time, event.to.as_str()))
-        .collect();
-    // the power fails at 6.5, 15, ..., each time for 2 s; a mode that is entered again begins anew
-    let first =
-        [(4.0, "Rest"), (6.5, "Stopped"), (8.5, "Rest"), (11.5, "Turn"), (15.0, "Stopped"), (17.0, "Turn")];
-    assert_eq!(steps[..6], first);
+    // written flat, and with modes in modes
+    for sample in &fenced(&document("docs/PAPER.md"), "hy")[..2] {
+        let run = simulate(sample);
+        let steps: Vec<(f64, &str)> = (run.events.iter().filter(|event| event.agent == "machine"))
+            .map(|event| (event.time, event.to.rsplit('.').next().unwrap()))
+            .collect();
+        // the power fails at 6.5, 15, ..., each time for 2 s; a mode that is entered again begins anew
+        let first = [
+            (4.0, "Rest"),
+            (6.5, "Stopped"),
+            (8.5, "Rest"),
+            (11.5, "Turn"),
+            (15.0, "Stopped"),
+            (17.0, "Turn"),
+        ];
+        assert_eq!(steps[..6], first);
+    }
 }
 
 #[test]

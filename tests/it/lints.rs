@@ -461,3 +461,54 @@ fn many_pairs_that_no_distance_prunes_are_told() {
         assert_eq!(codes(&text(400, own, guard)).contains(&"HY0614"), warned, "{own} {guard}");
     }
 }
+
+#[test]
+fn what_an_outer_mode_does_first_its_inner_modes_never_do() {
+    let model = |outer: &str, inner: &str| {
+        format!(
+            "agent A {{ state x = 0  flow {{ x' = 1 }}
+               initial mode Out {{ {outer} -> Off
+                 initial mode In {{ {inner} -> Else }}
+                 mode Else {{ after 1 -> In }} }}
+               mode Off {{ after 1 -> Out }} }}
+             system {{ a = A() }}  run {{ until 5 }}"
+        )
+    };
+    assert_eq!(codes(&model("when x >= 1", "when x >= 1")), ["HY0606"]);
+    assert_eq!(codes(&model("when x >= 1", "when x >= 1 priority 1")), [""; 0]);
+    assert_eq!(codes(&model("when x >= 1", "when x >= 2")), [""; 0]);
+    assert_eq!(codes(&model("when x^2 >= -1", "when x >= 2")), ["HY0606"; 2]);
+    assert_eq!(codes(&model("after 1 when x >= 1", "when x >= 1")), [""; 0]);
+}
+
+#[test]
+fn a_transition_into_a_mode_inside_does_not_lead_out() {
+    let text = "agent A { state x = 0  flow { x' = 1 }
+           initial mode Out { down: when x >= 1 -> Deep { x := 0 }
+             initial mode In { also: when x >= 1 priority 1 { x := x - 0.5 } }
+             mode Deep { later: when x >= 1 { x := 0.25 } } } }
+         system { a = A() }  run { until 5 }";
+    assert_eq!(codes(text), [""; 0]);
+}
+
+#[test]
+fn a_composite_mode_that_leads_back_into_itself_is_seen_through_its_inner_modes() {
+    let model = |inner: &str| {
+        format!(
+            "agent A {{ state x = 0  flow {{ x' = 1 }}
+               initial mode Out {{ again: when x >= 1 -> Out  initial mode In {{ {inner} }} }} }}
+             system {{ a = A() }}  run {{ until 5 }}"
+        )
+    };
+    assert_eq!(codes(&model("")), ["HY0607"]);
+    assert_eq!(codes(&model("entry { x := 0 }")), [""; 0]);
+    assert_eq!(codes(&model("exit { if x >= 1 { x := 0 } }")), [""; 0]);
+}
+
+#[test]
+fn of_modes_inside_one_that_is_entered_each_is_looked_at() {
+    let text = "agent A { initial mode Out { initial mode In { after 1 -> Off }  mode Never { mode Deep { } initial mode Too { } } }
+           mode Off { after 1 -> Out.history } }
+         system { a = A() }  run { until 5 }";
+    assert_eq!(codes(text), ["HY0604"]);
+}

@@ -17,6 +17,7 @@ mod van_der_pol;
 mod double_crossing;
 mod multirate;
 mod interlock;
+mod convoy;
 
 use crate::harness::{Case, Ended, near};
 

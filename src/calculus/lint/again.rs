@@ -23,7 +23,8 @@ use crate::math::Interval;
 pub fn transitions(system: &System, bounds: &Bounds, found: &mut Vec<Warning>) {
     for (number, ty) in system.types.iter().enumerate() {
         for (k, transition) in ty.transitions.iter().enumerate() {
-            let into_itself = transition.source != 0 && transition.target == Some(transition.source);
+            let into_itself = transition.source != 0
+                && transition.target.is_some_and(|target| target.mode.index() == transition.source);
             if into_itself && let Some(untouched) = fires_again(system, bounds, number, k) {
                 let mode = ty.modes[transition.source].path.clone();
                 let (label, span) = (transition.label.clone(), transition.span);

@@ -84,12 +84,13 @@ pub struct Effect<'s> {
     pub stops: bool,
 }
 
-/// The effect of a transition from one leaf to another, or to itself.
+/// The effect of a transition. Of the modes inside those that it leaves and enters each may be the one that is active.
 pub fn effect<'s>(ty: &'s AgentSystem, transition: &'s TransitionSystem) -> Effect<'s> {
-    let around = |mode: usize| std::iter::successors(Some(mode), |&id| ty.modes[id].parent);
-    let target = transition.target.unwrap_or(transition.source);
-    let exits = around(transition.source).map(|mode| &ty.modes[mode].exit);
-    let entries = around(ty.modes[target].initial_leaf).map(|mode| &ty.modes[mode].entry);
+    let target = transition.target.map_or(transition.source, |target| target.mode.index());
+    let all = || 0..ty.modes.len();
+    let concerned = |mode: usize, of: usize| ty.is_inside(mode, of) || ty.is_inside(of, mode);
+    let exits = all().filter(|&mode| concerned(mode, transition.source)).map(|mode| &ty.modes[mode].exit);
+    let entries = all().filter(|&mode| concerned(mode, target)).map(|mode| &ty.modes[mode].entry);
     let others: Vec<&ActionList> = exits.chain(entries).collect();
     let targets = |list: &ActionList| list.writes.iter().map(|(_, target)| *target).collect::<Vec<_>>();
     let mut unclear: FxHashSet<Target> = others.iter().flat_map(|list| targets(list)).collect();
@@ -132,12 +133,13 @@ fn stops(steps: &[ActionStep]) -> bool {
 }
 
 /// Transitions that have their turn before number `k` of a type while its source is active, and may lead out of it: those of modes
-/// around it, those before it in its own mode, and interactions. None if there are more than [`COMPARED_MAX`].
+/// around it and inside it, those before it in its own mode, and interactions. None if there are more than [`COMPARED_MAX`].
 pub fn before(system: &System, number: usize, k: usize) -> Option<Vec<&TransitionSystem>> {
     let ty = &system.types[number];
     let own = &ty.transitions[k];
     let mut found: Vec<&TransitionSystem> = Vec::new();
-    for mode in std::iter::successors(Some(own.source), |&id| ty.modes[id].parent) {
+    let inside = |&mode: &usize| mode != own.source && ty.is_inside(mode, own.source);
+    for mode in ty.around(own.source).chain((0..ty.modes.len()).filter(inside)) {
         let others = ty.modes[mode].transitions.iter().filter(|&&other| other != k);
         found.extend(
             others.map(|&other| &ty.transitions[other]).filter(|other| !comes_before(system, own, other)),

@@ -25,15 +25,17 @@ pub fn transitions(system: &System, bounds: &Bounds, found: &mut Vec<Warning>) {
     for (number, ty) in system.types.iter().enumerate() {
         let mut between: FxHashMap<(usize, usize), Vec<usize>> = FxHashMap::default();
         for (k, transition) in ty.transitions.iter().enumerate() {
-            if let Some(target) = transition.target
+            if let Some(target) = transition.target.map(|target| target.mode.index())
                 && transition.source != 0
+                && !ty.is_inside(target, transition.source)
+                && !ty.is_inside(transition.source, target)
             {
                 between.entry((transition.source, target)).or_default().push(k);
             }
         }
         for (k, transition) in ty.transitions.iter().enumerate() {
             let Some(target) = transition.target else { continue };
-            let back = between.get(&(target, transition.source));
+            let back = between.get(&(target.mode.index(), transition.source));
             for &back in back.into_iter().flatten().filter(|&&back| back > k).take(COMPARED_MAX) {
                 found.extend(Loop { system, number, there: k, back }.warning(bounds, &of_these));
             }

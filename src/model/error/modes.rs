@@ -14,6 +14,8 @@ pub(in crate::model) enum ModeError {
     NoInitial { owner: String, span: Span, example: String },
     /// Two initial modes.
     TwoInitial { owner: String, span: Span, first: Span },
+    /// The history of a mode without submodes.
+    NoHistory { path: String, declared: Span, span: Span },
     /// A flow reads an agent that may not be there.
     NoneInFlow { state: String, path: String, read: Span, flow: Span },
     /// `rising` or `crossing` outside of a guard.
@@ -70,6 +72,12 @@ impl From<ModeError> for Diagnostic {
                     .label(first, "the first one")
                     .help("leave out one `initial`")
             }
+            ModeError::NoHistory { path, declared, span } => {
+                Diagnostic::error("HY0248", format!("`{path}` has no modes inside, and so no history"))
+                    .label(span, "which submode was active last?")
+                    .label(declared, "declared here")
+                    .help(format!("write `-> {path}`"))
+            }
             ModeError::NoneInFlow { state, path, read, flow } => {
                 let diagnostic = Diagnostic::error(
                     "HY0245",
@@ -87,7 +95,7 @@ impl From<ModeError> for Diagnostic {
             .label(read, format!("`{path}` may be none here"))
             .help(format!("say when it counts: `rate ... when {path}`, or `if {path} then ... else 0`")),
             ModeError::BadRate { span, value } => {
-                Diagnostic::error("HY0248", "a rate must be finite, and 0 1/s or more")
+                Diagnostic::error("HY0249", "a rate must be finite, and 0 1/s or more")
                     .label(span, format!("this is {value} 1/s"))
             }
             ModeError::EdgeOutsideGuard { name, span } => {

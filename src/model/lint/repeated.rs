@@ -1,5 +1,5 @@
-//! Transitions that never get their turn (HY0606), because another one of their mode waits for the same condition, comes before
-//! them, and leaves the mode.
+//! Transitions that never get their turn (HY0606), because another one of their mode, or of one around it, waits for the same
+//! condition, comes before them, and leaves that mode.
 //!
 //! The same is what stands in the text in the same words: two conditions that only have the same value in this run are no
 //! slip. Those that are always true are found in `calculus::lint`.
@@ -9,18 +9,19 @@ use rustc_hash::FxHashMap;
 use super::Warning;
 use crate::model::context::Context;
 use crate::model::evaluate::Known;
-use crate::model::ir::{ExprId, ModeId, Transition, Trigger, TypeId};
+use crate::model::ir::{AgentType, ExprId, ModeId, Transition, Trigger, TypeId};
 
 /// Looks at the transitions of every mode but the agent's own, which stay armed when the mode changes.
 pub(super) fn conditions(context: &mut Context, found: &mut Vec<Warning>) {
     for number in 0..context.model.types.len() {
         let ty = TypeId::new(number);
-        let mut first: FxHashMap<(ModeId, String), (f64, usize)> = FxHashMap::default();
+        let mut first: FxHashMap<(ModeId, String), usize> = FxHashMap::default();
         for k in context.in_order(ty) {
             let transition = &context.model.types[ty].transitions[k.1];
             let Some(words) = context.words_of(transition) else { continue };
-            let key = (transition.source, words);
-            if let Some(&(_, by)) = first.get(&key) {
+            let model = &context.model.types[ty];
+            let mut around = std::iter::successors(Some(transition.source), |&mode| model.modes[mode].parent);
+            if let Some(by) = around.find_map(|mode| first.get(&(mode, words.clone())).copied()) {
                 let by = &context.model.types[ty].transitions[by];
                 found.push(Warning::Hidden {
                     label: transition.label.clone(),
@@ -28,11 +29,16 @@ pub(super) fn conditions(context: &mut Context, found: &mut Vec<Warning>) {
                     by: by.label.clone(),
                     first: by.span,
                 });
-            } else if transition.target.is_some_and(|target| target != transition.source) {
-                first.insert(key, k);
+            } else if leaves(&context.model.types[ty], transition) {
+                first.insert((transition.source, words), k.1);
             }
         }
     }
+}
+
+/// Whether a transition leads out of its mode.
+fn leaves(ty: &AgentType, transition: &Transition) -> bool {
+    transition.target.is_some_and(|target| !ty.is_inside(target.mode, transition.source))
 }
 
 impl Context<'_> {
@@ -56,7 +62,8 @@ impl Context<'_> {
             };
             order.extend(value.map(|value| (value, k)));
         }
-        order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let depth = |k: usize| self.model.types[ty].modes[self.model.types[ty].transitions[k].source].depth;
+        order.sort_by(|a, b| b.0.total_cmp(&a.0).then((depth(a.1), a.1).cmp(&(depth(b.1), b.1))));
         order
     }
 

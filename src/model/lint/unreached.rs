@@ -47,7 +47,7 @@ fn starts(model: &Model) -> Vec<Vec<ModeId>> {
 fn gotos(list: &[Action], types: &[TypeId; 2], starts: &mut [Vec<ModeId>]) {
     for action in list {
         match action {
-            Action::Goto { participant, target, .. } => starts[types[*participant].index()].push(*target),
+            Action::Goto { participant, target, .. } => starts[types[*participant].index()].push(target.mode),
             Action::If { then, otherwise, .. } => {
                 gotos(then, types, starts);
                 gotos(otherwise, types, starts);
@@ -62,7 +62,7 @@ fn reached(ty: &AgentType, starts: &[ModeId]) -> Vec<bool> {
     let mut reached = vec![false; ty.modes.len()];
     let mut from: Vec<Vec<ModeId>> = vec![Vec::new(); ty.modes.len()];
     for transition in &ty.transitions {
-        from[transition.source.index()].extend(transition.target);
+        from[transition.source.index()].extend(transition.target.map(|target| target.mode));
     }
     let mut pending = starts.to_vec();
     while let Some(mode) = pending.pop() {

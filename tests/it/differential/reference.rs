@@ -453,10 +453,9 @@ impl<'a> Reference<'a> {
         (0..self.instances.len()).filter(|instance| self.is_active(*instance)).any(|instance| {
             let condition = match self.transition(instance).trigger {
                 Trigger::When(guard) | Trigger::After(_, Some(guard)) => guard,
-                Trigger::After(_, None)
-                | Trigger::Every(..)
-                | Trigger::On { .. }
-                | Trigger::Rate { .. } => return false,
+                Trigger::After(_, None) | Trigger::Every(..) | Trigger::On { .. } | Trigger::Rate { .. } => {
+                    return false;
+                }
             };
             let (agents, pair) = (self.instances[instance].agents, self.is_pair(instance));
             point::Guard { model: self.model, agents, pair, condition }.hangs_on_a_point(&self.world, end)
@@ -508,10 +507,9 @@ impl<'a> Reference<'a> {
                 let scope = self.scope(&self.world, instance);
                 self.is_active(instance) && self.instances[instance].boundary.is_left_open(scope, guard)
             }
-            Trigger::After(_, None)
-            | Trigger::Every(_, None)
-            | Trigger::On { .. }
-            | Trigger::Rate { .. } => false,
+            Trigger::After(_, None) | Trigger::Every(_, None) | Trigger::On { .. } | Trigger::Rate { .. } => {
+                false
+            }
         };
         piled_up || (0..self.instances.len()).any(stays)
     }
@@ -566,7 +564,7 @@ impl<'a> Reference<'a> {
         let transition = self.transition(instance);
         let agents = self.instances[instance].agents;
         let mut moves: Vec<(usize, ModeId)> =
-            transition.target.iter().map(|target| (agents[0], *target)).collect();
+            transition.target.iter().map(|target| (agents[0], target.mode)).collect();
         let mut done = Done::default();
         let mut scope = self.scope(&self.world, instance);
         scope.received = self.received(instance);
@@ -583,7 +581,7 @@ impl<'a> Reference<'a> {
         scope.decided = &[];
         for action in &transition.actions {
             if let Action::Goto { participant, target, .. } = action {
-                moves.push((agents[*participant], *target));
+                moves.push((agents[*participant], target.mode));
             }
         }
         for (agent, target) in &moves {
@@ -671,10 +669,9 @@ impl<'a> Reference<'a> {
     fn settle(&self, instance: usize) -> Boundary {
         let guard = match self.transition(instance).trigger {
             Trigger::When(guard) | Trigger::After(_, Some(guard)) => guard,
-            Trigger::After(_, None)
-            | Trigger::Every(..)
-            | Trigger::On { .. }
-            | Trigger::Rate { .. } => return Boundary::default(),
+            Trigger::After(_, None) | Trigger::Every(..) | Trigger::On { .. } | Trigger::Rate { .. } => {
+                return Boundary::default();
+            }
         };
         Boundary::settle(self.scope(&self.world, instance), &self.world, guard)
     }

@@ -51,9 +51,8 @@ fn estimates(values: &[f64]) -> [f64; 3] {
 fn means_and_variances_are_those_of_theory() {
     let cells = 1500;
     let run = colony(cells, 1);
-    let all = |name: &str| -> Vec<f64> {
-        (0..cells).map(|k| run.value(&format!("colony[{k}].{name}"))).collect()
-    };
+    let all =
+        |name: &str| -> Vec<f64> { (0..cells).map(|k| run.value(&format!("colony[{k}].{name}"))).collect() };
     let (m, p) = (all("m"), all("p"));
     let [mean_m, mean_p, var_m, var_p, cov] = moments(END);
     // a Poisson process with deaths stays one: its variance is its mean

@@ -6,6 +6,7 @@ mod rule_01_state;
 mod rule_02_arming;
 mod rule_03_instant;
 mod rule_04_micro_steps;
+mod rule_04_hierarchy;
 mod rule_05_writing;
 mod rule_06_start;
 mod rule_07_reset;

@@ -1,10 +1,10 @@
 //! Rule 9: messages are seen in the next micro-step, one for each agent at a time, in the order of their senders.
 
-use crate::harness::{Ended, all_near, refused, simulate_error, simulate_forms};
+use crate::harness::{Ended, all_near, refused, simulate_by_both_forms, simulate_error};
 
 #[test]
 fn rule_09_what_is_emitted_is_seen_in_the_next_micro_step() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { event ping  state x = 0  flow { x' = 1 }  go: when x >= 1 { emit ping } }
          agent B { discrete n: int = 0
            hear: on ping { n := n + 1 }
@@ -21,7 +21,7 @@ fn rule_09_what_is_emitted_is_seen_in_the_next_micro_step() {
 #[test]
 fn rule_09_messages_come_one_a_micro_step_in_the_order_of_their_senders() {
     // whatever the order in which they are emitted: the priorities turn it round
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A(p: int) { event ping(n: int)  state x = 0  flow { x' = 1 }
            go: when x >= 1 priority p { emit ping(p) } }
          agent B { discrete last: int = 0, all: int = 0
@@ -44,7 +44,7 @@ fn rule_09_messages_come_one_a_micro_step_in_the_order_of_their_senders() {
 
 #[test]
 fn rule_09_two_messages_of_one_sender_come_as_they_were_emitted() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { event e(n: int)  event f(n: int)
            initial mode M { exit { emit e(1) }  go: after 1 -> N { emit f(2)  emit e(3) } }
            mode N { entry { emit e(4) } } }
@@ -58,7 +58,7 @@ fn rule_09_two_messages_of_one_sender_come_as_they_were_emitted() {
 
 #[test]
 fn rule_09_exit_and_transition_read_the_state_before_and_entry_what_they_wrote() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { event e(n: int)  discrete k: int = 1
            initial mode M { exit { emit e(k)  k := k + 10 }  go: after 1 -> N { emit e(k + 1) } }
            mode N { entry { emit e(k + 2) } } }
@@ -71,7 +71,7 @@ fn rule_09_exit_and_transition_read_the_state_before_and_entry_what_they_wrote()
 #[test]
 fn rule_09_a_message_is_missed_only_if_nothing_is_enabled_at_its_turn() {
     // the first message takes b out of the mode that hears; the second is missed; the third is heard where it has come to
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A(k: int) { event e(n: int)  go: after 1 { emit e(k) } }
          agent B { discrete heard: int = 0
            initial mode M { on e(n) -> N { heard := n } }
@@ -88,7 +88,7 @@ fn rule_09_a_message_is_missed_only_if_nothing_is_enabled_at_its_turn() {
 
 #[test]
 fn rule_09_one_message_does_not_run_through_the_modes() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent Hand { event press  every 1 { emit press } }
          agent Lamp { initial mode Off { on press -> On }  mode On { on press -> Off } }
          system { hand = Hand()  lamp = Lamp() }  run { until 3.5 }",
@@ -101,7 +101,7 @@ fn rule_09_one_message_does_not_run_through_the_modes() {
 #[test]
 fn rule_09_what_is_passed_over_is_not_missed() {
     // at the turn of the message a transition of higher priority takes the region; the message is heard after it
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { event e  go: after 1 { emit e } }
          agent B { discrete n: int = 0, k: int = 0
            hear: on e { n := n + 1 }
@@ -115,7 +115,7 @@ fn rule_09_what_is_passed_over_is_not_missed() {
 #[test]
 fn rule_09_a_message_waits_while_it_is_passed_over() {
     // the higher one takes b to N in which nothing is enabled but another `on`: that hears it
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { event e  go: after 1 { emit e } }
          agent B { discrete k: int = 0
            initial mode M { hear: on e { k := k + 1 }  first: after 1 { k := 10 }  urgent: when k == 10 priority 1 -> N }
@@ -127,7 +127,7 @@ fn rule_09_a_message_waits_while_it_is_passed_over() {
 
 #[test]
 fn rule_09_every_on_that_is_enabled_fires_by_one_message_before_the_next_comes() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A(k: int) { event e(n: int)  go: after 1 { emit e(k) } }
          agent B { discrete a: int = 0, b: int = 0
            first: on e(n) when n <= 2 { a := 10*a + n }
@@ -148,19 +148,19 @@ fn rule_09_an_agent_does_not_hear_itself_unless_it_says_so() {
         )
     };
     // each hears the other
-    let run = simulate_forms(&text(""));
+    let run = simulate_by_both_forms(&text(""));
     assert_eq!(run.log()[2..], ["1 A.hear a b", "1 A.hear b a"]);
     // each hears itself
-    let run = simulate_forms(&text("from self"));
+    let run = simulate_by_both_forms(&text("from self"));
     assert_eq!(run.log()[2..], ["1 A.hear a a", "1 A.hear b b"]);
     // a link to oneself is not `self`
-    let run = simulate_forms(&text("from next"));
+    let run = simulate_by_both_forms(&text("from next"));
     assert_eq!(run.log()[2..], ["1 A.hear b a"]);
 }
 
 #[test]
 fn rule_09_from_whom() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent Car { event brake(v: real)  link lead: Car  discrete heard: real = 0
            initial mode Drive {
              panic: after 1 when not lead -> Brake
@@ -181,7 +181,7 @@ fn rule_09_from_whom() {
 #[test]
 fn rule_09_a_message_from_someone_else_takes_no_turn() {
     // b listens to s[2] only: it hears it in the next micro-step, whoever else emits
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { event e  go: after 1 { emit e } }
          agent B(whom: A) { on e from whom { } }
          system { s = A[3]()  b = B(whom = s[2]) }  run { until 3 }",
@@ -191,7 +191,7 @@ fn rule_09_a_message_from_someone_else_takes_no_turn() {
 
 #[test]
 fn rule_09_without_from_all_types_with_the_event_are_heard() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { event e(n: int)  after 1 { emit e(1) } }
          agent B { event e(n: int)  after 2 { emit e(2) } }
          agent C { discrete all: int = 0  hear: on e(n) { all := 10*all + n } }
@@ -210,7 +210,7 @@ fn rule_09_without_from_all_types_with_the_event_are_heard() {
 
 #[test]
 fn rule_09_a_delayed_message_is_seen_first_thing_then() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { event e(n: int)  discrete k: int = 0
            tick: every 1 when k < 3 { k := k + 1  emit e(k + 1) after 2.5  emit e(10*(k + 1)) after 0 [s] } }
          agent B { discrete all: int = 0  hear: on e(n) { all := all + n } }
@@ -226,7 +226,7 @@ fn rule_09_a_delayed_message_is_seen_first_thing_then() {
 #[test]
 fn rule_09_any_number_of_messages_is_under_way_and_those_due_together_come_in_order() {
     // sent one after the other, later ones with shorter delays: all arrive at 2
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A(k: int) { event e(n: int)  go: after 0.25*k { emit e(k) after 2 - 0.25*k } }
          agent B { discrete all: int = 0  hear: on e(n) { all := 10*all + n } }
          system { b = B()  s = A[4](k = 4 - index) }  run { until 3 }",
@@ -238,7 +238,7 @@ fn rule_09_any_number_of_messages_is_under_way_and_those_due_together_come_in_or
 
 #[test]
 fn rule_09_values_are_those_of_the_sender_when_it_emits() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { event e(x: real)  state x = 0  flow { x' = 1 }  go: when x >= 1 { emit e(x) after 2 } }
          agent B { link whom: A  discrete was = 0, now = 0  hear: on e(x) from whom { was := x  now := whom.x } }
          system { a = A()  b = B(whom = a) }  run { until 4 }",
@@ -260,7 +260,7 @@ fn rule_09_a_condition_on_its_boundary_when_a_message_comes_is_true() {
         ("x > 1 and x < 1", 1.0, false),
     ] {
         let start = 1.0 - 0.3 * rate;
-        let run = simulate_forms(&format!(
+        let run = simulate_by_both_forms(&format!(
             "agent A {{ event e  go: after 0.1 {{ emit e after 0.2 }} }}
              agent B {{ state x = {start}  flow {{ x' = {rate} }}  hear: on e when {guard} {{ }} }}
              system {{ a = A()  b = B() }}  run {{ until 1 }}"
@@ -271,7 +271,7 @@ fn rule_09_a_condition_on_its_boundary_when_a_message_comes_is_true() {
 
 #[test]
 fn rule_09_whom_an_exists_binds_is_known_to_the_actions() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { event e(w: real)  state x = 0  flow { x' = 1 }  go: when x >= 2 { emit e(0.5) } }
          agent C(x0: real) { state x = x0  flow { x' = 0.25 } }
          agent B { discrete seen = 0
@@ -285,7 +285,7 @@ fn rule_09_whom_an_exists_binds_is_known_to_the_actions() {
 
 #[test]
 fn rule_09_interactions_let_their_participants_emit() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A(v: real) { event bump(speed: real [m/s])  state x = 0  discrete felt: real = 0
            flow { x' = v }
            mine: on bump(s) from self { felt := s }
@@ -301,7 +301,7 @@ fn rule_09_interactions_let_their_participants_emit() {
 
 #[test]
 fn rule_09_a_symmetric_interaction_may_let_both_emit() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A(v: real) { event bump(x: real)  state x = 0  discrete felt: real = 0
            flow { x' = v }  feel: on bump(x) from self { felt := x } }
          interaction Meet(a: A, b: A) { pair: when abs(a.x - b.x) <= 1 { emit b.bump(a.x)  emit a.bump(b.x) } }
@@ -313,7 +313,7 @@ fn rule_09_a_symmetric_interaction_may_let_both_emit() {
 
 #[test]
 fn rule_09_entry_actions_at_the_start_emit() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { event e  initial mode M { entry { emit e } } }
          agent B { hear: on e { } }
          system { a = A()  b = B() }  run { until 1 }",
@@ -324,7 +324,7 @@ fn rule_09_entry_actions_at_the_start_emit() {
 
 #[test]
 fn rule_09_messages_at_the_end_are_heard_and_later_ones_are_not() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { event e(n: int)  after 0 [s] { emit e(1) after 0.1 + 0.2  emit e(2) after 0.31 } }
          agent B { discrete k: int = 0  hear: on e(n) { k := n } }
          system { a = A()  b = B() }  run { until 0.3 }",
@@ -346,7 +346,7 @@ fn rule_09_messages_without_end_are_an_error() {
 
 #[test]
 fn rule_09_many_senders_at_once_are_nothing_to_complain_of() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { event e  state x = 0  flow { x' = 1 }  go: when x >= 1 { emit e } }
          agent B { discrete n: int = 0  hear: on e { n := n + 1 } }
          system { s = A[300](x = 1e-13*index)  b = B() }  run { until 2 }",
@@ -357,7 +357,7 @@ fn rule_09_many_senders_at_once_are_nothing_to_complain_of() {
 #[test]
 fn rule_09_a_message_wakes_an_agent_that_runs_ahead() {
     // thousands who oscillate alone; a message sends some of them back in time to where they were
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A(k: int) { event kick(whom: int)  discrete n: int = 0
            go: every 0.37 { n := n + 1  emit kick(mod(7*n, 60)) after 0.05 } }
          agent B(k: int) { state x = 1, v = 0  discrete hits: int = 0

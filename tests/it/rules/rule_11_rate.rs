@@ -2,7 +2,7 @@
 
 use hyc::math::draw::{Distribution, Key};
 
-use crate::harness::{Case, all_near, near, refused, simulate, simulate_error, simulate_forms};
+use crate::harness::{Case, all_near, near, refused, simulate, simulate_by_both_forms, simulate_error};
 
 /// The numbers that an agent draws for a transition, with seed 0.
 fn drawn(agent: &str, label: &str, n: u64) -> Vec<f64> {
@@ -25,7 +25,7 @@ fn before(times: Vec<f64>, end: f64) -> Vec<f64> {
 
 #[test]
 fn rule_11_a_constant_rate_fires_at_the_sums_of_what_is_drawn() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { discrete n: int = 0  go: rate 4 [1/s] { n := n + 1 } }
          system { a = A()  b = A() }  run { until 5 }",
     );
@@ -37,7 +37,7 @@ fn rule_11_a_constant_rate_fires_at_the_sums_of_what_is_drawn() {
 
 #[test]
 fn rule_11_the_hazard_is_integrated_with_the_flow() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { state x = 0  discrete n: int = 0  flow { x' = 1 }  go: rate 2*x { n := n + 1 } }
          system { a = A() }  run { until 5  tolerance 1e-10 }",
     );
@@ -49,7 +49,7 @@ fn rule_11_the_hazard_is_integrated_with_the_flow() {
 #[test]
 fn rule_11_the_hazard_is_zero_while_the_guard_is_false() {
     // open while the sine is positive: in the first half of each period of 2
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { discrete n: int = 0  go: rate 1.5 when sin(pi*time) > 0 { n := n + 1 } }
          system { a = A() }  run { until 40  tolerance 1e-10 }",
     );
@@ -62,7 +62,7 @@ fn rule_11_the_hazard_is_zero_while_the_guard_is_false() {
 
 #[test]
 fn rule_11_the_guard_may_be_over_others_who_are_not_coupled_by_it() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent Car(v: real) { state x = 0  flow { x' = v } }
          agent Ramp(lane: int) { discrete n: int = 0
            enter: rate 2 when not exists c in Car: c.x >= 1 and c.x <= 3 { n := n + 1 } }
@@ -75,7 +75,7 @@ fn rule_11_the_guard_may_be_over_others_who_are_not_coupled_by_it() {
 
 #[test]
 fn rule_11_the_guard_may_be_discrete() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { discrete open: bool = false, n: int = 0
            turn: every 1 { open := not open }  go: rate 3 when open { n := n + 1 } }
          system { a = A() }  run { until 9.5 }",
@@ -88,7 +88,7 @@ fn rule_11_the_guard_may_be_discrete() {
 #[test]
 fn rule_11_a_new_number_is_drawn_on_entry() {
     // M is left after 0.1 in any case; the hazard begins anew each time
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { discrete n: int = 0
            initial mode M { go: rate 5 -> N  over: after 0.1 -> N }
            mode N { back: after 0.2 -> M } }
@@ -112,7 +112,7 @@ fn rule_11_a_new_number_is_drawn_on_entry() {
 
 #[test]
 fn rule_11_a_firing_that_enters_its_mode_again_draws_once() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { state x = 0  flow { x' = 1 }  initial mode M { go: rate 2 -> M { x := 0 } } }
          system { a = A() }  run { until 8 }",
     );
@@ -122,7 +122,7 @@ fn rule_11_a_firing_that_enters_its_mode_again_draws_once() {
 
 #[test]
 fn rule_11_a_rate_that_reads_another_s_state_couples_the_two() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent B { state x = 0  flow { x' = 2 }  jump: when x >= 3 { x := 0 } }
          agent A { link b: B  discrete n: int = 0  go: rate b.x when b { n := n + 1 } }
          system { b = B()  a = A(b = b) }  run { until 12  tolerance 1e-10 }",
@@ -141,21 +141,20 @@ fn rule_11_a_rate_that_reads_another_s_state_couples_the_two() {
 
 #[test]
 fn rule_11_rates_compete() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A { initial mode M { one: rate 1 -> N  two: rate 3 -> N }  mode N { back: after 1 -> M } }
          system { a = A() }  run { until 60 }",
     );
     let (one, two) = (drawn("a", "A.one", 80), drawn("a", "A.two", 80));
     let firsts = one.iter().zip(&two).map(|(one, two)| *one < two / 3.0);
-    let log: Vec<bool> =
-        run.events.iter().filter(|e| e.to == "N").map(|e| e.transition == "A.one").collect();
+    let log: Vec<bool> = run.events.iter().filter(|e| e.to == "N").map(|e| e.transition == "A.one").collect();
     assert!(log.len() > 40);
     assert_eq!(log, firsts.take(log.len()).collect::<Vec<_>>());
 }
 
 #[test]
 fn rule_11_whom_the_guard_binds_is_known_to_the_actions() {
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent C(x0: real) { state x = x0  flow { x' = 1 } }
          agent A { discrete seen = 0  go: rate 2 when exists c in C: c.x >= 1 { seen := c.x } }
          system { cs = C[2](x0 = -index)  a = A() }  run { until 4 }",
@@ -191,7 +190,7 @@ fn rule_11_a_rate_is_never_negative() {
     simulate("agent A { state x = 1  discrete n: int = 0  flow { x' = -1 }  go: rate 0.001*x when x > 0 { n := n + 1 } }
               system { a = A() }  run { until 3 }");
     let words = refused("agent A { discrete n: int = 0  go: rate 2 - 3 { n := n + 1 } }");
-    assert!(words.contains("HY0248"), "{words}");
+    assert!(words.contains("HY0249"), "{words}");
     let words = refused("agent A { discrete n: int = 0  go: rate 2 [s] { n := n + 1 } }");
     assert!(words.contains("HY0231"), "{words}");
 }
@@ -210,7 +209,7 @@ fn rule_11_nothing_of_a_hazard_shows() {
 #[test]
 fn rule_11_rates_of_many_who_run_ahead() {
     // thousands of events of agents that oscillate alone: the fast form has them cold between their firings
-    let run = simulate_forms(
+    let run = simulate_by_both_forms(
         "agent A(w: real) { state x = 1, v = 0  discrete n: int = 0
            flow { x' = v  v' = -w^2*x }
            kick: rate 0.3 + 0.2*x^2 { n := n + 1  v := 0.5*v + 0.1 }
