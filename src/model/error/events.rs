@@ -25,9 +25,11 @@ impl From<EventError> for Diagnostic {
                     Some(owner) => format!("agent type `{owner}` has no event `{name}`"),
                     None => format!("no agent type has an event `{name}`"),
                 };
-                let diagnostic =
-                    with_similar(Diagnostic::error("HY0255", title).label(span, "no such event"), &similar);
-                diagnostic.help(format!("declare it in the agent that emits it: `event {name}`"))
+                let diagnostic = Diagnostic::error("HY0255", title).label(span, "no such event");
+                match similar {
+                    Some(_) => with_similar(diagnostic, &similar),
+                    None => diagnostic.help(format!("declare it in the agent that emits it: `event {name}`")),
+                }
             }
             EventError::Differ { name, span, declared: [(a, first), (b, second)] } => {
                 let title = format!("`{a}` and `{b}` both have an event `{name}`, with different values");

@@ -363,7 +363,7 @@ fn rule_09_a_message_wakes_an_agent_that_runs_ahead() {
          agent B(k: int) { state x = 1, v = 0  discrete hits: int = 0
            flow { x' = v  v' = -x }
            hear: on kick(whom) when whom == k { v := v + 0.5*x  hits := hits + 1 }
-           far: when x >= 1.4 { hits := hits + 100 } }
+           far: when x >= 1.05 { hits := hits + 100 } }
          system { a = A(k = 0)  bs = B[60](k = index) }  run { until 20 }",
     );
     assert_eq!(run.times("B.hear").len(), 53);
