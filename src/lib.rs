@@ -54,4 +54,5 @@ pub mod calculus;
 pub mod codegen;
 pub mod runtime;
 pub mod output;
+pub mod picture;
 pub mod cli;

@@ -130,9 +130,9 @@ pub const SHAPES: [Shape; 24] = [
     },
     Shape {
         name: "actions",
-        head: "agent A {\n  state x = 0\n  flow { x' = 1 }\n  when x > 9 {\n",
+        head: "agent A {\n  state x = 0\n  flow { x' = 1 }\n",
         part: action,
-        tail: "} }\nsystem { a = A() }\nrun { until 1 }\n",
+        tail: "}\nsystem { a = A() }\nrun { until 1 }\n",
     },
     Shape {
         name: "records",
@@ -175,11 +175,11 @@ fn agent_let(text: &mut String, k: usize) {
 }
 
 fn let_of_next(text: &mut String, k: usize) {
-    // A chain from each ten to the next, so that nothing is defined through too many others.
-    match k % 10 {
-        9 => put!(text, "  let p{k} = x"),
-        _ => put!(text, "  let p{k} = 0.5*p{} + x", k + 1),
+    // Ten in a chain, so that nothing is defined through too many others.
+    for k in 10 * k..10 * k + 9 {
+        put!(text, "  let p{k} = 0.5*p{} + x", k + 1);
     }
+    put!(text, "  let p{} = x", 10 * k + 9);
 }
 
 fn function(text: &mut String, k: usize) {
@@ -231,7 +231,10 @@ fn comparison(text: &mut String, k: usize) {
 }
 
 fn action(text: &mut String, k: usize) {
-    put!(text, "if x > {k} {{ x := {k} }}");
+    put!(
+        text,
+        "  when x > {k} {{ if x > {k}.5 {{ x := {k} }} else if x > 0 {{ x := 1 }} else {{ x := 0 }} }}"
+    );
 }
 
 fn record(text: &mut String, k: usize) {

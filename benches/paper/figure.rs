@@ -125,6 +125,7 @@ fn range(values: impl Iterator<Item = f64>, log: bool) -> std::ops::Range<f64> {
 }
 
 fn draw(area: &DrawingArea<SVGBackend<'_>, Shift>, panel: &Panel) -> Outcome {
+    hyc::picture::ready_font()?;
     let xs = range(panel.series.iter().flat_map(|s| s.points.iter().map(|p| p.0)), false);
     let ys = range(panel.series.iter().flat_map(|s| s.points.iter().map(|p| p.1)), panel.log_y);
     if panel.log_y { on_axes(area, panel, xs, ys.log_scale()) } else { on_axes(area, panel, xs, ys) }

@@ -11,5 +11,5 @@ pub mod render;
 
 pub use arena::{Arena, Idx};
 pub use diagnostic::{Diagnostic, Label, Severity};
-pub use number::{number_text, write_number};
+pub use number::{append_number, number_text, write_number};
 pub use source::{FileId, SourceMap, Span};

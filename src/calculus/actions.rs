@@ -1,7 +1,10 @@
 //! Lists of actions: right-hand sides as functions, tests as guards, and what may be written.
 
+use std::sync::Arc;
+
 use crate::base::Span;
 use crate::calculus::aggregate;
+use crate::calculus::births;
 use crate::calculus::condition::Sense;
 use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
@@ -18,7 +21,7 @@ pub fn actions(
     name: &str,
 ) -> Result<ActionList, Error> {
     let mut list = ActionList { steps: steps(draft, scope, actions, name)?, ..ActionList::default() };
-    collect_writes(&list.steps, &mut list.writes);
+    collect_writes(draft, scope, &list.steps, &mut list.writes);
     list.writes.sort_unstable();
     list.writes.dedup();
     Ok(list)
@@ -61,6 +64,13 @@ fn steps(
                 ActionStep::Goto { slot: *participant, target: *target, span: *span }
             }
             Action::Stop { reason, span } => ActionStep::Stop { reason: reason.clone(), span: *span },
+            Action::Create(create) => {
+                ActionStep::Create(Arc::new(births::birth(draft, scope, create, name)?))
+            }
+            Action::Destroy { agent, span } => match births::agent(draft, scope, *agent, *span)? {
+                Some(slot) => ActionStep::Destroy { slot, span: *span },
+                None => continue,
+            },
         });
     }
     Ok(steps)
@@ -138,18 +148,26 @@ fn target(draft: &Draft, scope: &Scope, slot: usize, variable: VarRef) -> (Targe
     }
 }
 
-fn collect_writes(steps: &[ActionStep], writes: &mut Vec<(usize, Target)>) {
+/// Who destroys an agent writes all of it.
+fn collect_writes(draft: &Draft, scope: &Scope, steps: &[ActionStep], writes: &mut Vec<(usize, Target)>) {
     for step in steps {
         match step {
             ActionStep::Assign { slot, target, .. } | ActionStep::Draw { slot, target, .. } => {
                 writes.push((*slot, *target));
             }
-            ActionStep::Goto { slot, .. } => writes.push((*slot, Target::Mode)),
             ActionStep::If { then, otherwise, .. } => {
-                collect_writes(then, writes);
-                collect_writes(otherwise, writes);
+                collect_writes(draft, scope, then, writes);
+                collect_writes(draft, scope, otherwise, writes);
             }
-            ActionStep::Emit { .. } | ActionStep::Stop { .. } => {}
+            ActionStep::Destroy { slot, .. } => {
+                let layout = draft.layout(scope.frame.slots[*slot].ty());
+                writes.extend((0..layout.n_states).map(|k| (*slot, Target::State(k))));
+                writes.extend((0..layout.n_discretes).map(|k| (*slot, Target::Aux(layout.discrete(k)))));
+            }
+            ActionStep::Emit { .. }
+            | ActionStep::Goto { .. }
+            | ActionStep::Stop { .. }
+            | ActionStep::Create(_) => {}
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Agent types and interactions, part by part: modes, claims, transitions, lets.
 
-use crate::base::Span;
+use crate::base::{FileId, Span};
 use crate::calculus::actions;
 use crate::calculus::aggregate;
 use crate::calculus::condition::{Cond, Sense, Written};
@@ -20,33 +20,60 @@ use crate::model::ir::{
     TypeId,
 };
 
-/// The names and places of all modes, which listings need before there are equations.
+/// The names and places of all modes, which listings need before there are equations; then the configurations of regions.
 pub fn mode_tree(draft: &mut Draft) {
     for (id, ty) in draft.model.types.iter_enumerated() {
-        let modes = ty.modes.iter_enumerated().map(|(mode, declared)| ModeSystem {
-            name: declared.name.clone(),
-            path: declared.path.clone(),
-            parent: declared.parent.map(ModeId::index),
-            depth: declared.depth,
-            initial: declared.initial.map(ModeId::index),
-            history: None,
-            active: if declared.children.is_empty() { active(ty, mode) } else { Vec::new() },
-            flow: None,
-            claims: Vec::new(),
-            entry: ActionList::default(),
-            exit: ActionList::default(),
-            transitions: Vec::new(),
-        });
-        draft.types[id.index()].modes = modes.collect();
+        let mut modes: Vec<ModeSystem> = ty.modes.iter().map(node).collect();
+        let leaves = ty.leaves();
+        let first = if ty.has_regions() { modes.len() } else { 0 };
+        let mut stride = 1;
+        for leaves in leaves.iter().rev() {
+            for (rank, leaf) in leaves.iter().enumerate() {
+                modes[leaf.index()].offset = if ty.has_regions() { rank * stride } else { leaf.index() };
+            }
+            stride *= leaves.len();
+        }
+        for number in 0..ty.n_configurations() {
+            let chosen = ir::AgentType::configuration(&leaves, number);
+            let at = first + chosen.iter().map(|leaf| modes[leaf.index()].offset).sum::<usize>();
+            if at == modes.len() {
+                modes.push(configuration(ty.path(&chosen)));
+            }
+            modes[at].active = ty.active(&chosen).into_iter().map(ModeId::index).collect();
+        }
+        let system = &mut draft.types[id.index()];
+        system.modes = modes;
+        system.regions = ty.regions().into_iter().map(ModeId::index).collect();
     }
 }
 
-/// A mode and those around it, outer first.
-fn active(ty: &ir::AgentType, mode: ModeId) -> Vec<usize> {
-    let around = std::iter::successors(Some(mode), |&mode| ty.modes[mode].parent);
-    let mut active: Vec<usize> = around.map(ModeId::index).collect();
-    active.reverse();
-    active
+fn node(declared: &Mode) -> ModeSystem {
+    ModeSystem {
+        name: declared.name.clone(),
+        parent: declared.parent.map(ModeId::index),
+        depth: declared.depth,
+        initial: declared.initial.map(ModeId::index),
+        ..configuration(declared.path.clone())
+    }
+}
+
+/// A node of which only the path is known.
+fn configuration(path: String) -> ModeSystem {
+    ModeSystem {
+        name: path.clone(),
+        path,
+        parent: None,
+        depth: 0,
+        initial: None,
+        offset: 0,
+        history: None,
+        active: Vec::new(),
+        flow: None,
+        claims: Vec::new(),
+        entry: ActionList::default(),
+        exit: ActionList::default(),
+        transitions: Vec::new(),
+    }
 }
 
 /// Columns for the modes to whose history something leads.
@@ -84,21 +111,28 @@ fn destinations(list: &[Action], visit: &mut dyn FnMut(usize, Destination)) {
                 destinations(otherwise, visit);
             }
             Action::Assign { .. } | Action::Draw { .. } | Action::Emit { .. } | Action::Stop { .. } => {}
+            Action::Create(_) | Action::Destroy { .. } => {}
         }
     }
 }
 
-/// Flows of all leaves; then every type has as many locks as the leaf that needs most.
+/// Flows of all configurations; then every type has as many locks as the one that needs most.
 pub fn flows(draft: &mut Draft) {
-    for (id, ty) in draft.model.types.iter_enumerated() {
-        for (mode, declared) in ty.modes.iter_enumerated().filter(|(_, mode)| mode.children.is_empty()) {
-            let name = mode_name(ty, declared);
-            let flow = flow::flow(draft, id, mode, &name);
+    for id in draft.model.types.indices() {
+        for mode in 0..draft.types[id.index()].modes.len() {
+            let system = &draft.types[id.index()];
+            let active = system.modes[mode].active.clone();
+            if active.is_empty() {
+                continue;
+            }
+            let path = &system.modes[mode].path;
+            let name = if path.is_empty() { system.name.clone() } else { format!("{}.{path}", system.name) };
+            let flow = flow::flow(draft, id, &active, &name);
             let flow = draft.keep(flow);
             let system = &mut draft.types[id.index()];
             system.layout.n_locks =
                 system.layout.n_locks.max(flow.as_ref().map_or(0, |flow| flow.kinks.len()));
-            system.modes[mode.index()].flow = flow;
+            system.modes[mode].flow = flow;
         }
     }
 }
@@ -307,12 +341,17 @@ fn number(draft: &mut Draft, scope: &mut Scope, expr: ExprId, name: &str) -> Res
     Ok(draft.function(|| name.to_owned(), vec![node]))
 }
 
-/// Numbers all transitions in the order in which they stand in the source.
-pub fn number_declarations(types: &mut [AgentSystem], interactions: &mut [InteractionSystem]) {
+/// Numbers all transitions in the order in which they stand in the source, file by file.
+pub fn number_declarations(
+    files: &[FileId],
+    types: &mut [AgentSystem],
+    interactions: &mut [InteractionSystem],
+) {
     let own = types.iter_mut().flat_map(|ty| &mut ty.transitions);
     let pairs = interactions.iter_mut().flat_map(|i| &mut i.transitions).map(|pair| &mut pair.transition);
     let mut all: Vec<&mut TransitionSystem> = own.chain(pairs).collect();
-    all.sort_by_key(|transition| (transition.span.file, transition.span.start));
+    let rank = |file: FileId| files.iter().position(|&other| other == file);
+    all.sort_by_key(|transition| (rank(transition.span.file), transition.span.start));
     for (number, transition) in all.into_iter().enumerate() {
         transition.declaration = number;
     }

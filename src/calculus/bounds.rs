@@ -73,7 +73,9 @@ impl Bounds {
 /// What columns can hold as such.
 fn columns(system: &System, ty: &AgentSystem) -> Vec<Interval> {
     let layout = &ty.layout;
-    let n_agents = system.population.agents.len() as f64;
+    // The place of an agent that is created may be any.
+    let creates = system.action_lists().any(|list| !list.births().is_empty());
+    let n_agents = if creates { REAL.hi } else { system.population.agents.len() as f64 };
     let mut columns = vec![REAL; layout.n_aux()];
     columns[Layout::NUMBER] = Interval::new(0.0, (n_agents - 1.0).max(0.0));
     columns[Layout::MODE] = Interval::new(0.0, (ty.modes.len() - 1) as f64);

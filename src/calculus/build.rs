@@ -12,7 +12,7 @@ use crate::calculus::frame::{AgentRef, Env, EnvId, Scope, Value};
 use crate::calculus::graph::{Node, NodeId};
 use crate::calculus::system::{Layout, Slot};
 use crate::math::Op;
-use crate::model::ir::{ExprId, ExprKind, FunctionId, Mode, ModeId, Type, TypeId};
+use crate::model::ir::{ExprId, ExprKind, FunctionId, ModeId, Type, TypeId};
 
 /// Why an expression is not lowered.
 #[derive(Debug)]
@@ -316,7 +316,7 @@ fn present(draft: &mut Draft, scope: &Scope, agent: AgentRef) -> NodeId {
 }
 
 /// The number of an agent, -1 for none.
-fn agent_number(draft: &mut Draft, scope: &Scope, agent: AgentRef) -> NodeId {
+pub fn agent_number(draft: &mut Draft, scope: &Scope, agent: AgentRef) -> NodeId {
     match agent {
         AgentRef::Absent => draft.graph.number(-1.0),
         AgentRef::Slot(slot) => match scope.frame.slots[slot] {
@@ -331,29 +331,33 @@ fn agent_number(draft: &mut Draft, scope: &Scope, agent: AgentRef) -> NodeId {
     }
 }
 
-/// Whether the agent in a slot is in a mode or inside it.
+/// Whether the agent in a slot is in a mode or inside it: whether its configuration is one of those in which the mode is active.
 fn in_mode(draft: &mut Draft, scope: &Scope, slot: usize, mode: ModeId) -> NodeId {
-    let modes = &draft.model.types[TypeId::new(scope.frame.slots[slot].ty())].modes;
-    let inside = |mut leaf: ModeId| loop {
-        if leaf == mode {
-            return true;
+    let modes = &draft.types[scope.frame.slots[slot].ty()].modes;
+    let configurations = (0..modes.len()).filter(|&k| !modes[k].active.is_empty());
+    // Runs of configurations that stand behind each other.
+    let mut runs: Vec<[usize; 2]> = Vec::new();
+    let mut goes_on = false;
+    for k in configurations {
+        let is_inside = modes[k].active.contains(&mode.index());
+        match runs.last_mut() {
+            Some(run) if is_inside && goes_on => run[1] = k,
+            _ if is_inside => runs.push([k, k]),
+            _ => {}
         }
-        match modes[leaf].parent {
-            Some(parent) => leaf = parent,
-            None => return false,
-        }
-    };
-    let is_leaf = |m: &Mode| m.children.is_empty();
-    let leaves: Vec<usize> = modes
-        .iter_enumerated()
-        .filter(|(id, m)| is_leaf(m) && inside(*id))
-        .map(|(id, _)| id.index())
-        .collect();
+        goes_on = is_inside;
+    }
     let present = draft.graph.intern(aux(slot, Layout::MODE));
     let mut any = draft.graph.number(0.0);
-    for leaf in leaves {
-        let leaf = draft.graph.number(leaf as f64);
-        let here = draft.graph.binary(Op::Eq, present, leaf);
+    for [first, last] in runs {
+        let [low, high] = [first, last].map(|k| draft.graph.number(k as f64));
+        let here = if first == last {
+            draft.graph.binary(Op::Eq, present, low)
+        } else {
+            let from = draft.graph.binary(Op::Le, low, present);
+            let to = draft.graph.binary(Op::Le, present, high);
+            draft.graph.binary(Op::And, from, to)
+        };
         any = draft.graph.binary(Op::Or, any, here);
     }
     any

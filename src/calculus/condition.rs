@@ -84,6 +84,17 @@ pub fn lower_in(
     Lowering { draft, scope, span, sides: None, parts: 0, depth: 0, quantifiers: 0 }.lower(env, expr, sense)
 }
 
+/// `a < b`, for numbers that have been lowered.
+pub fn less(draft: &mut Draft, scope: &mut Scope, a: NodeId, b: NodeId, span: Span) -> Result<Cond, Error> {
+    let sides = Some(Sides { left: a, sign: "<", right: b });
+    Lowering { draft, scope, span, sides, parts: 0, depth: 0, quantifiers: 0 }.less(
+        Relation::Negative,
+        a,
+        b,
+        span,
+    )
+}
+
 pub(super) struct Lowering<'d, 'm> {
     pub draft: &'d mut Draft<'m>,
     pub scope: &'d mut Scope,

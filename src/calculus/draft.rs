@@ -1,14 +1,19 @@
 //! A system under construction: what the passes of this floor share.
 
-use rustc_hash::FxHashMap;
+use std::hash::BuildHasher as _;
+
+use hashbrown::HashTable;
+use hashbrown::hash_table::Entry;
+use rustc_hash::FxBuildHasher;
 
 use crate::base::{Arena, Diagnostic, Span};
 use crate::calculus::error::Error;
 use crate::calculus::graph::{Graph, NodeId};
 use crate::calculus::system::{
-    AgentSystem, Column, EventSystem, Function, FunctionId, InteractionSystem, Layout, System,
+    AgentSystem, Column, EventSystem, Function, FunctionId, Initials, InteractionSystem, Layout, LinkSystem,
+    System,
 };
-use crate::model::ir::{AgentType, Event, Model, Trigger, Type, Variable};
+use crate::model::ir::{AgentType, Event, Link, Model, Trigger, Type, Variable};
 
 /// See the head of this file.
 pub struct Draft<'m> {
@@ -18,7 +23,8 @@ pub struct Draft<'m> {
     pub graph: Graph,
     /// All functions so far.
     pub functions: Arena<Function>,
-    known: FxHashMap<Vec<NodeId>, FunctionId>,
+    /// By their outputs.
+    known: HashTable<FunctionId>,
     /// The agent types; columns first, then the rest.
     pub types: Vec<AgentSystem>,
     /// What was wrong.
@@ -30,19 +36,24 @@ impl<'m> Draft<'m> {
     pub fn new(model: &'m Model) -> Self {
         let types = model.types.iter().map(|ty| columns(model, ty)).collect();
         let (graph, functions) = (Graph::default(), Arena::new());
-        Self { model, graph, functions, known: FxHashMap::default(), types, diagnostics: Vec::new() }
+        Self { model, graph, functions, known: HashTable::new(), types, diagnostics: Vec::new() }
     }
 
     /// The function with these outputs; the first name it was given stays.
     pub fn function(&mut self, name: impl FnOnce() -> String, outputs: Vec<NodeId>) -> FunctionId {
-        if let Some(&known) = self.known.get(&outputs) {
-            return known;
+        let Self { functions, known, graph, .. } = self;
+        let hash = |outputs: &[NodeId]| FxBuildHasher.hash_one(outputs);
+        let is_same = |&id: &FunctionId| functions[id].outputs == outputs;
+        match known.entry(hash(&outputs), is_same, |&id| hash(&functions[id].outputs)) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(place) => {
+                // Its tape will be as long.
+                graph.reach(&outputs);
+                let id = functions.push(Function { name: name(), outputs });
+                place.insert(id);
+                id
+            }
         }
-        // Its tape will be as long.
-        self.graph.reach(&outputs);
-        let id = self.functions.push(Function { name: name(), outputs: outputs.clone() });
-        self.known.insert(outputs, id);
-        id
     }
 
     /// Whether the equations take more work than the limit.
@@ -110,6 +121,10 @@ fn n_received(model: &Model, ty: &AgentType) -> usize {
     heard.map(|&(ty, event)| model.types[ty].events[event].params.len()).max().unwrap_or(0)
 }
 
+fn link(link: &Link) -> LinkSystem {
+    LinkSystem { name: link.name.clone(), required: link.required, updates: Vec::new() }
+}
+
 fn columns(model: &Model, ty: &AgentType) -> AgentSystem {
     let column = |v: &Variable| Column { name: v.name.clone(), scale: v.scale, boolean: v.ty == Type::Bool };
     AgentSystem {
@@ -127,13 +142,15 @@ fn columns(model: &Model, ty: &AgentType) -> AgentSystem {
         states: ty.states.iter().map(column).collect(),
         params: ty.params.iter().map(column).collect(),
         discretes: ty.discretes.iter().map(column).collect(),
-        links: ty.links.iter().map(|link| link.name.clone()).collect(),
+        links: ty.links.iter().map(link).collect(),
         hazards: ty.rates().map(|transition| transition.label.clone()).collect(),
         events: ty.events.iter().map(event).collect(),
         streams: Vec::new(),
         lets: Vec::new(),
         declared: ty.declared.clone(),
+        initials: Initials::default(),
         modes: Vec::new(),
+        regions: Vec::new(),
         transitions: Vec::new(),
     }
 }

@@ -7,9 +7,9 @@ use std::fmt::Write;
 use crate::calculus::graph::NodeId;
 use crate::calculus::print::{self, Names, Sheet};
 use crate::calculus::system::{
-    ActionStep, AgentSystem, Atom, ClaimKind, Column, Condition, Destination, Flow, Frame, FunctionId, Guard,
-    KinkKind, LetValue, ModeSystem, Near, PairTransition, Quantified, Sender, System, Target,
-    TransitionSystem, Trigger,
+    ActionStep, AgentSystem, Atom, Birth, ClaimKind, Column, Condition, Destination, Flow, Frame, FunctionId,
+    Guard, KinkKind, LetValue, ModeSystem, Near, PairTransition, Quantified, Sender, Source, System, Target,
+    TransitionSystem, Trigger, VarRef,
 };
 
 /// The whole system as text; the same for the same system.
@@ -38,7 +38,7 @@ fn agent(system: &System, ty: &AgentSystem, out: &mut String) {
         ("states", columns(&ty.states)),
         ("parameters", columns(&ty.params)),
         ("discretes", columns(&ty.discretes)),
-        ("links", ty.links.clone()),
+        ("links", ty.links.iter().map(|link| link.name.clone()).collect()),
         ("hazards", ty.hazards.clone()),
     ] {
         if !names.is_empty() {
@@ -291,7 +291,11 @@ impl<'a> Block<'a> {
                     self.add_steps(then);
                     self.add_steps(otherwise);
                 }
-                ActionStep::Goto { .. } | ActionStep::Stop { .. } => {}
+                ActionStep::Create(birth) => {
+                    let functions = birth.given.iter().flat_map(|(_, source)| source.functions());
+                    self.functions.extend(functions);
+                }
+                ActionStep::Goto { .. } | ActionStep::Stop { .. } | ActionStep::Destroy { .. } => {}
             }
         }
     }
@@ -406,6 +410,33 @@ impl<'a> Block<'a> {
         }
     }
 
+    fn birth(&mut self, sheet: &Sheet, birth: &Birth, indent: usize) {
+        let ty = &self.names.types[birth.ty];
+        let path = &ty.modes[birth.mode].path;
+        let mode = if path.is_empty() { String::new() } else { format!(" in {path}") };
+        self.line(indent, format!("create {}{mode}", ty.name));
+        for (variable, source) in &birth.given {
+            let values = source.functions().iter().map(|&function| self.value(sheet, function));
+            let values = values.collect::<Vec<_>>().join(", ");
+            let name = match variable {
+                VarRef::State(k) => &ty.states[*k].name,
+                VarRef::Discrete(k) => &ty.discretes[*k].name,
+                VarRef::Param(k) => &ty.params[*k].name,
+                VarRef::Link(k) => &ty.links[*k].name,
+                VarRef::Let(k) => &ty.lets[*k].column.name,
+            };
+            let given = match source {
+                Source::Number(_) => format!("{name} = {values}"),
+                Source::Draw { distribution, .. } => format!("{name} ~ {}({values})", distribution.name()),
+            };
+            self.line(indent + 2, given);
+        }
+        for &(link, slot) in &birth.links {
+            let agent = slot.map_or("none", |slot| self.names.frame.slots[slot].name());
+            self.line(indent + 2, format!("{} = {agent}", ty.links[link].name));
+        }
+    }
+
     fn steps(&mut self, sheet: &Sheet, steps: &[ActionStep], indent: usize) {
         for step in steps {
             match step {
@@ -444,6 +475,10 @@ impl<'a> Block<'a> {
                     let reason = reason.as_ref().map_or(String::new(), |reason| format!(" {reason:?}"));
                     self.line(indent, format!("stop{reason}"));
                 }
+                ActionStep::Create(birth) => self.birth(sheet, birth, indent),
+                ActionStep::Destroy { slot, .. } => {
+                    self.line(indent, format!("destroy {}", self.names.frame.slots[*slot].name()));
+                }
             }
         }
     }
@@ -454,6 +489,5 @@ fn column(sheet: &Sheet, slot: usize, target: Target) -> String {
     match target {
         Target::State(k) => sheet.state(slot, k),
         Target::Aux(k) => sheet.aux(slot, k),
-        Target::Mode => unreachable!("modes are not assigned"),
     }
 }

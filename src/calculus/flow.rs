@@ -1,4 +1,4 @@
-//! The equations of a leaf mode: rates with their kinks locked, second rates, the Jacobian, who is coupled.
+//! The equations of a configuration, which is a leaf mode or one of each region: rates with their kinks locked, second rates, the Jacobian, who is coupled.
 
 use crate::base::Span;
 use crate::calculus::build::{self, Halt};
@@ -12,10 +12,10 @@ use crate::calculus::system::{Flow, JacobianEntry};
 use crate::math::Op;
 use crate::model::ir::{ExprId, ModeId, Transition, Trigger, TypeId};
 
-/// The flow of a leaf.
-pub fn flow(draft: &mut Draft, ty: TypeId, leaf: ModeId, name: &str) -> Result<Flow, Error> {
+/// The flow with these modes active.
+pub fn flow(draft: &mut Draft, ty: TypeId, active: &[usize], name: &str) -> Result<Flow, Error> {
     let mut scope = Scope::of_self(ty);
-    let equations = equations(draft, ty, leaf);
+    let equations = equations(draft, ty, active);
     let (exprs, mut spans): (Vec<ExprId>, Vec<Span>) = equations.into_iter().unzip();
     scope.equations = Some(exprs.clone());
     let mut plain = Vec::with_capacity(exprs.len());
@@ -23,7 +23,7 @@ pub fn flow(draft: &mut Draft, ty: TypeId, leaf: ModeId, name: &str) -> Result<F
         plain.push(number(draft, &mut scope, expr)?);
     }
     for (hazard, transition) in draft.model.types[ty].rates().enumerate() {
-        plain.push(hazard_rate(draft, &mut scope, (ty, leaf), hazard, transition)?);
+        plain.push(hazard_rate(draft, &mut scope, (ty, active), hazard, transition)?);
         spans.push(transition.span);
     }
     let (rates, kinks) = kinks::lock(draft, &mut scope, ty.index(), &plain, name);
@@ -61,15 +61,13 @@ fn number(draft: &mut Draft, scope: &mut Scope, expr: ExprId) -> Result<NodeId, 
 fn hazard_rate(
     draft: &mut Draft,
     scope: &mut Scope,
-    (ty, leaf): (TypeId, ModeId),
+    (ty, active): (TypeId, &[usize]),
     hazard: usize,
     transition: &Transition,
 ) -> Result<NodeId, Error> {
-    let modes = &draft.model.types[ty].modes;
-    let mut around = std::iter::successors(Some(leaf), |&mode| modes[mode].parent);
     let zero = draft.graph.number(0.0);
     let Trigger::Rate { rate, guard, .. } = transition.trigger else { return Ok(zero) };
-    if !around.any(|mode| mode == transition.source) {
+    if !active.contains(&transition.source.index()) {
         return Ok(zero);
     }
     let rate = number(draft, scope, rate)?;
@@ -84,17 +82,18 @@ fn hazard_rate(
 }
 
 /// The equation of every state, in order; the model has checked that each has one.
-fn equations(draft: &Draft, ty: TypeId, leaf: ModeId) -> Vec<(ExprId, Span)> {
+fn equations(draft: &Draft, ty: TypeId, active: &[usize]) -> Vec<(ExprId, Span)> {
     let ty = &draft.model.types[ty];
     let mut found: Vec<Option<(ExprId, Span)>> = vec![None; ty.states.len()];
-    let mut mode = Some(leaf);
-    while let Some(id) = mode {
-        for &(state, rate, span) in &ty.modes[id].flow {
+    for &mode in active {
+        for &(state, rate, span) in &ty.modes[ModeId::new(mode)].flow {
             found[state] = Some((rate, span));
         }
-        mode = ty.modes[id].parent;
     }
-    found.into_iter().map(|equation| equation.expect("every state has one equation in every leaf")).collect()
+    found
+        .into_iter()
+        .map(|equation| equation.expect("every state has one equation in every configuration"))
+        .collect()
 }
 
 /// The entries of a row of df/dx that are not always 0.

@@ -1,8 +1,11 @@
 //! The expression graph: hash-consed, operands before their users.
 
 use std::cell::{Cell, RefCell};
+use std::hash::BuildHasher as _;
 
-use rustc_hash::FxHashMap;
+use hashbrown::HashTable;
+use hashbrown::hash_table::Entry;
+use rustc_hash::FxBuildHasher;
 
 use crate::base::{Arena, Idx};
 use crate::math::Op;
@@ -90,7 +93,8 @@ impl Node {
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
     nodes: Arena<Node>,
-    known: FxHashMap<Node, NodeId>,
+    /// By what they are; the nodes themselves stand in `nodes` only.
+    known: HashTable<NodeId>,
     moving: Vec<bool>,
     /// How many nodes have been looked at.
     work: Cell<u64>,
@@ -107,17 +111,22 @@ struct Marks {
 impl Graph {
     /// The node's name, the same for the same node.
     pub fn intern(&mut self, node: Node) -> NodeId {
-        if let Some(&id) = self.known.get(&node) {
-            return id;
-        }
+        let Self { nodes, known, moving, .. } = self;
+        let hash = |node: &Node| FxBuildHasher.hash_one(node);
+        let place = match known.entry(hash(&node), |&id| nodes[id] == node, |&id| hash(&nodes[id])) {
+            Entry::Occupied(known) => return *known.get(),
+            Entry::Vacant(place) => place,
+        };
         let moves = match node {
             Node::Constant(_) | Node::Aux { .. } => false,
             Node::Time | Node::State { .. } | Node::Rate { .. } | Node::Acceleration { .. } => true,
-            Node::Unary(..) | Node::Binary(..) | Node::Select(..) => node.operands().any(|id| self.moves(id)),
+            Node::Unary(..) | Node::Binary(..) | Node::Select(..) => {
+                node.operands().any(|id| moving[id.index()])
+            }
         };
-        let id = self.nodes.push(node);
-        self.known.insert(node, id);
-        self.moving.push(moves);
+        let id = nodes.push(node);
+        place.insert(id);
+        moving.push(moves);
         id
     }
 

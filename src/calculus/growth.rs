@@ -5,8 +5,9 @@
 
 use crate::calculus::bounds::{Bounds, REAL};
 use crate::calculus::reader::Reader;
-use crate::calculus::system::{ActionList, ActionStep, FunctionId, System, Target};
+use crate::calculus::system::{ActionList, ActionStep, FunctionId, Source, System, Target, VarRef};
 use crate::math::Interval;
+use crate::math::draw::Distribution;
 
 /// After so many rounds a variable that still grows is unbounded to the side on which it does.
 const ROUNDS_MAX: usize = 4;
@@ -16,9 +17,71 @@ pub fn bounds(system: &System) -> Bounds {
     grown(system, Bounds::at_start(system))
 }
 
-/// The bounds that hold in every run with the agents that there are at t = 0, and no others: none are created later.
+/// The bounds that hold in every run with the agents that there are at t = 0, and with those that they create.
 pub fn bounds_of_population(system: &System) -> Bounds {
-    grown(system, Bounds::of_population(system))
+    let mut bounds = Bounds::of_population(system);
+    add_births(system, &mut bounds);
+    grown(system, bounds)
+}
+
+/// Adds what agents that are created can start with. What they are given may depend on discrete variables, and on parameters
+/// of those who were created before: it is bounded by what these can hold in any run.
+fn add_births(system: &System, bounds: &mut Bounds) {
+    let any = grown(system, Bounds::at_start(system));
+    let mut given: Vec<(usize, usize, Interval)> = Vec::new();
+    for list in system.action_lists() {
+        let mut reader = Reader::new(system, &any, &list.frame);
+        for birth in list.births() {
+            for (variable, source) in &birth.given {
+                given.extend(started(system, &mut reader, birth.ty, *variable, source));
+            }
+        }
+    }
+    let born = given_births(system);
+    for (number, ty) in system.types.iter().enumerate().filter(|(number, _)| born[*number]) {
+        let mut reader = Reader::new(system, &any, &ty.initials.frame);
+        for (variable, source) in &ty.initials.values {
+            given.extend(started(system, &mut reader, number, *variable, source));
+        }
+    }
+    for (ty, column, interval) in given {
+        let known = &mut bounds.aux[ty][column];
+        *known = known.hull(interval);
+    }
+}
+
+/// By type, whether agents of it are created.
+fn given_births(system: &System) -> Vec<bool> {
+    let mut born = vec![false; system.types.len()];
+    system.action_lists().flat_map(|list| list.births()).for_each(|birth| born[birth.ty] = true);
+    born
+}
+
+/// The column of a parameter or a discrete variable, and what it can start with.
+fn started(
+    system: &System,
+    reader: &mut Reader,
+    ty: usize,
+    variable: VarRef,
+    source: &Source,
+) -> Option<(usize, usize, Interval)> {
+    let layout = &system.types[ty].layout;
+    let column = match variable {
+        VarRef::Param(k) => layout.param(k),
+        VarRef::Discrete(k) => layout.discrete(k),
+        VarRef::State(_) | VarRef::Link(_) | VarRef::Let(_) => return None,
+    };
+    let mut bound = |k: usize| {
+        let form = reader.function(source.functions()[k]);
+        reader.forms.interval(form)
+    };
+    let interval = match source {
+        Source::Number(_) => bound(0),
+        Source::Draw { distribution: Distribution::Uniform, .. } => bound(0).hull(bound(1)),
+        Source::Draw { distribution: Distribution::Normal, .. } => REAL,
+        Source::Draw { distribution: Distribution::Exponential, .. } => Interval { lo: 0.0, hi: REAL.hi },
+    };
+    Some((ty, column, interval.intersect(REAL).unwrap_or(REAL)))
 }
 
 /// What holds from the start, widened by all that actions can give.
@@ -102,6 +165,7 @@ fn each_assignment(steps: &[ActionStep], each: &mut dyn FnMut(usize, Target, Giv
                 each_assignment(otherwise, each);
             }
             ActionStep::Emit { .. } | ActionStep::Goto { .. } | ActionStep::Stop { .. } => {}
+            ActionStep::Create(_) | ActionStep::Destroy { .. } => {}
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Where the values of an agent stand: the columns of its rows, in order.
 
+use crate::math::Scale;
+
 /// The columns of an agent type.
 ///
 /// Auxiliary columns in order: number, mode, time of entry, parameters, discretes, links, what a message carries, gates, histories, locks. Numbers
@@ -70,4 +72,24 @@ impl Layout {
     pub fn n_aux(&self) -> usize {
         self.lock(self.n_locks)
     }
+}
+
+/// A named column with its unit for output.
+#[derive(Clone, Debug)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// What one declared unit is in SI.
+    pub scale: Scale,
+    /// Whether it holds a boolean.
+    pub boolean: bool,
+}
+
+/// A column that actions write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Target {
+    /// A state.
+    State(usize),
+    /// A discrete variable, by its auxiliary column (absolute index).
+    Aux(usize),
 }

@@ -11,7 +11,9 @@ pub mod graph;
 mod relation;
 mod range;
 mod layout;
+mod slot;
 pub mod system;
+mod access;
 mod simplify;
 pub mod evaluate;
 pub(crate) mod derive;
@@ -30,6 +32,8 @@ mod guard;
 mod aggregate;
 mod kinks;
 mod flow;
+mod births;
+mod links;
 mod actions;
 mod symmetry;
 mod agents;
@@ -57,8 +61,10 @@ pub fn derive(model: &Model) -> Result<System, Vec<Diagnostic>> {
     agents::modes(&mut draft);
     agents::transitions(&mut draft);
     agents::lets(&mut draft);
+    births::initials(&mut draft);
+    links::updates(&mut draft);
     let mut interactions = agents::interactions(&mut draft);
-    agents::number_declarations(&mut draft.types, &mut interactions);
+    agents::number_declarations(&model.files, &mut draft.types, &mut interactions);
     draft.finish(interactions).map(near::ranges)
 }
 

@@ -70,7 +70,7 @@ impl Names<'_> {
             Layout::ENTRY => self.of(slot, "entry"),
             _ if column < layout.discrete(0) => self.of(slot, &agent.params[column - layout.param(0)].name),
             _ if column < layout.link(0) => self.of(slot, &agent.discretes[column - layout.discrete(0)].name),
-            _ if column < layout.received(0) => self.of(slot, &agent.links[column - layout.link(0)]),
+            _ if column < layout.received(0) => self.of(slot, &agent.links[column - layout.link(0)].name),
             _ if column < layout.gate(0) => format!("received{}", column - layout.received(0) + 1),
             _ if column < layout.history(0) => self.of(slot, &format!("gate{}", column - layout.gate(0) + 1)),
             _ if column < layout.lock(0) => self.of(slot, &format!("history{}", column - layout.history(0))),

@@ -11,8 +11,8 @@ use rustc_hash::FxHashMap;
 use crate::calculus::draft::Draft;
 use crate::calculus::graph::{Graph, Node, NodeId};
 use crate::calculus::system::{
-    ActionStep, Condition, Frame, FunctionId, Guard, Quantified, Relation, Slot, Target, TransitionSystem,
-    Trigger,
+    ActionStep, Birth, Condition, Frame, FunctionId, Guard, Quantified, Relation, Slot, Source, Target,
+    TransitionSystem, Trigger, VarRef,
 };
 use crate::math::Op;
 
@@ -142,7 +142,34 @@ impl<'a> Former<'a> {
                 let reason = self.id(Form::Text(reason.clone()));
                 self.part("stop", Vec::new(), vec![reason])
             }
+            ActionStep::Create(birth) => self.birth(birth),
+            ActionStep::Destroy { slot, .. } => self.part("destroy", self.path(*slot as u32), Vec::new()),
         }
+    }
+
+    fn birth(&mut self, birth: &Birth) -> FormId {
+        let mut parts = Vec::new();
+        for (variable, source) in &birth.given {
+            let values = source.functions().iter().map(|&function| self.function(function)).collect();
+            let kind = match source {
+                Source::Number(_) => 0,
+                Source::Draw { distribution, .. } => 1 + *distribution as usize,
+            };
+            let (word, number) = match variable {
+                VarRef::State(k) => ("state", k),
+                VarRef::Discrete(k) => ("discrete", k),
+                VarRef::Param(k) => ("param", k),
+                VarRef::Link(k) => ("link", k),
+                VarRef::Let(k) => ("let", k),
+            };
+            parts.push(self.part(word, vec![*number, kind], values));
+        }
+        for (link, slot) in &birth.links {
+            let mut path = slot.map_or(Vec::new(), |slot| self.path(slot as u32));
+            path.insert(0, *link);
+            parts.push(self.part("link", path, Vec::new()));
+        }
+        self.part("create", vec![birth.ty, birth.mode], parts)
     }
 
     fn guard(&mut self, guard: &Guard) -> FormId {
@@ -305,7 +332,6 @@ fn column(target: &Target) -> [usize; 2] {
     match target {
         Target::State(k) => [0, *k],
         Target::Aux(k) => [1, *k],
-        Target::Mode => [2, 0],
     }
 }
 

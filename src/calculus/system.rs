@@ -13,10 +13,10 @@ use std::sync::Arc;
 
 use crate::base::{Arena, Idx, Span};
 use crate::calculus::graph::{Graph, NodeId};
-pub use crate::calculus::layout::Layout;
+pub use crate::calculus::layout::{Column, Layout, Target};
 pub use crate::calculus::range::{Near, Range};
 pub use crate::calculus::relation::Relation;
-use crate::math::Scale;
+pub use crate::calculus::slot::Slot;
 pub use crate::math::draw::Distribution;
 pub use crate::model::ir::{
     Aggregate, Block, Destination, Inside, Instance, Integrator, Population, Record, Run, VarRef,
@@ -24,7 +24,7 @@ pub use crate::model::ir::{
 
 mod action;
 
-pub use action::{ActionList, ActionStep, Sender, Target, TransitionSystem, Trigger};
+pub use action::{ActionList, ActionStep, Birth, Initials, Sender, Source, TransitionSystem, Trigger};
 
 /// Names a [`Function`].
 pub type FunctionId = Idx<Function>;
@@ -109,54 +109,6 @@ pub struct Term {
     pub smooth: bool,
 }
 
-/// How the agent in a slot is found.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Slot {
-    /// `self`, a participant, or an agent bound by a quantifier.
-    Root {
-        /// Its type.
-        ty: usize,
-        /// For listings: `self`, `a`, `o`.
-        name: String,
-    },
-    /// The agent that link number `link` of the agent in slot `from` leads to; it may be absent.
-    Link {
-        /// Where the link starts.
-        from: usize,
-        /// The number of the link in its type.
-        link: usize,
-        /// The type of the agent it leads to.
-        ty: usize,
-        /// For listings: `lead`, `o.lead`.
-        name: String,
-    },
-    /// The value of an aggregate.
-    Fold {
-        /// Its number in [`Frame::folds`].
-        number: usize,
-        /// The type over which it goes.
-        ty: usize,
-        /// For listings: `sum[o in Car]`.
-        name: String,
-    },
-}
-
-impl Slot {
-    /// The agent type; of an aggregate that over which it goes.
-    pub fn ty(&self) -> usize {
-        match self {
-            Slot::Root { ty, .. } | Slot::Link { ty, .. } | Slot::Fold { ty, .. } => *ty,
-        }
-    }
-
-    /// The name for listings.
-    pub fn name(&self) -> &str {
-        match self {
-            Slot::Root { name, .. } | Slot::Link { name, .. } | Slot::Fold { name, .. } => name,
-        }
-    }
-}
-
 /// An agent type.
 #[derive(Clone, Debug)]
 pub struct AgentSystem {
@@ -170,8 +122,8 @@ pub struct AgentSystem {
     pub params: Vec<Column>,
     /// Names of the discrete variables.
     pub discretes: Vec<Column>,
-    /// Names of the links.
-    pub links: Vec<String>,
+    /// The links.
+    pub links: Vec<LinkSystem>,
     /// The labels of its `rate` transitions. What is left of their hazards are states behind the others, which no output shows.
     pub hazards: Vec<String>,
     /// Its events.
@@ -182,33 +134,63 @@ pub struct AgentSystem {
     pub lets: Vec<LetSystem>,
     /// Recordable names in order of declaration.
     pub declared: Vec<(String, VarRef)>,
-    /// The tree of modes, numbered as in the model; 0 is the root.
+    /// What its agents start with; empty if none of them are created during a run.
+    pub initials: Initials,
+    /// The tree of modes, numbered as in the model; 0 is the root. Behind it, for an agent with regions, its configurations: the
+    /// combinations of a leaf of each region. In an agent without regions the leaves are the configurations.
     pub modes: Vec<ModeSystem>,
+    /// The regions; the root is the only one of an agent without regions.
+    pub regions: Vec<usize>,
     /// Transitions of all modes in order of declaration.
     pub transitions: Vec<TransitionSystem>,
 }
 
-impl AgentSystem {
-    /// A mode and those around it, inner first.
-    pub fn around(&self, mode: usize) -> impl Iterator<Item = usize> + '_ {
-        std::iter::successors(Some(mode), |&mode| self.modes[mode].parent)
-    }
-
-    /// Whether a mode is another one, or inside it.
-    pub fn is_inside(&self, mode: usize, other: usize) -> bool {
-        self.around(mode).any(|around| around == other)
-    }
-}
-
-/// A named column with its unit for output.
+/// A link of an agent type.
 #[derive(Clone, Debug)]
-pub struct Column {
+pub struct LinkSystem {
     /// Its name.
     pub name: String,
-    /// What one declared unit is in SI.
-    pub scale: Scale,
-    /// Whether it holds a boolean.
-    pub boolean: bool,
+    /// A parameter of agent type: never none.
+    pub required: bool,
+    /// If it follows from an expression: its cases, of which the first that holds says whom it leads to.
+    pub updates: Vec<LinkUpdate>,
+}
+
+/// One case of a link that follows from an expression.
+#[derive(Clone, Debug)]
+pub struct LinkUpdate {
+    /// The number of the link in its type.
+    pub link: usize,
+    /// As messages call it: `Car.lead`.
+    pub label: String,
+    /// The agents that all of it reads.
+    pub frame: Frame,
+    /// When the case holds.
+    pub case: Guard,
+    /// When it holds and the link does not lead where it says: `And` of the case and of that, which is a tree of its own.
+    pub stale: Guard,
+    /// Whom the link is to lead to.
+    pub target: Whither,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// Whom a link is to lead to.
+#[derive(Clone, Debug)]
+pub enum Whither {
+    /// To nobody.
+    Nobody,
+    /// To the agent in a slot.
+    Slot(usize),
+    /// To whoever has the least key. The link strays if `Or(Exists(And(filter, Or(nobody, nearer))), And(somebody, lost))`.
+    Nearest {
+        /// Among whom.
+        range: Range,
+        /// Who belongs to it.
+        filter: Guard,
+        /// One output.
+        key: FunctionId,
+    },
 }
 
 impl AgentSystem {
@@ -252,24 +234,26 @@ pub enum LetValue {
     Condition(Guard),
 }
 
-/// A node of the tree of modes.
+/// A node of the tree of modes, or a configuration.
 #[derive(Clone, Debug)]
 pub struct ModeSystem {
     /// Its name.
     pub name: String,
-    /// `Drive.Cruise`; empty for the root.
+    /// `Drive.Cruise`; empty for the root; `Motion.Drive|Lamp.Off` for a configuration of regions.
     pub path: String,
-    /// None for the root.
+    /// None for the root, and for a configuration of regions.
     pub parent: Option<usize>,
     /// 0 for the root.
     pub depth: usize,
-    /// The submode that is entered by default; none for a leaf.
+    /// The submode that is entered by default; none for a leaf, and for the root of an agent with regions.
     pub initial: Option<usize>,
+    /// For a leaf, what it adds to the number of a configuration: its own number in an agent without regions.
+    pub offset: usize,
     /// The auxiliary column that remembers which submode was active last; only where a `M.history` needs it.
     pub history: Option<usize>,
-    /// For a leaf, the modes that are active in it, outer first: the root, ..., itself.
+    /// For a configuration, the modes that are active in it, outer first: the root, ..., its leaves.
     pub active: Vec<usize>,
-    /// The equations of a leaf.
+    /// The equations of a configuration.
     pub flow: Option<Flow>,
     /// Invariants and asserts declared in this mode, without those of enclosing modes.
     pub claims: Vec<ClaimSystem>,
@@ -281,7 +265,7 @@ pub struct ModeSystem {
     pub transitions: Vec<usize>,
 }
 
-/// The differential equations of a leaf mode.
+/// The differential equations of a configuration.
 #[derive(Clone, Debug)]
 pub struct Flow {
     /// The agents it reads.

@@ -11,6 +11,9 @@ use crate::runtime::paper::Form;
 #[derive(Debug, Parser)]
 #[command(name = "hyc", version, max_term_width = 100, propagate_version = true)]
 pub(super) struct Arguments {
+    /// Colours in messages: where a person reads and NO_COLOR is not set, or as said here
+    #[arg(long, global = true, value_enum, default_value_t, value_name = "WHEN")]
+    pub(super) color: ColourWhen,
     #[command(subcommand)]
     pub(super) command: Command,
 }
@@ -19,6 +22,10 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// Compile a model and simulate it
     Run(Box<RunArguments>),
+    /// Simulate a model, and write a page that shows the run in a browser
+    Report(Box<ReportArguments>),
+    /// Draw a run: from a table that it wrote, or from a model
+    Plot(PlotArguments),
     /// Simulate a model by several algorithms, and say what each costs and misses
     Compare(CompareArguments),
     /// Say what is wrong with models
@@ -27,6 +34,12 @@ pub(super) enum Command {
     Show(ShowArguments),
     /// Explain a code such as HY0203; without a code, list all
     Explain(ExplainArguments),
+    /// Write a commented model that runs, to begin with
+    New(NewArguments),
+    /// Print a script that completes commands and options, for a shell
+    Completions(CompletionsArguments),
+    /// Print the manual page, for `man -l -`
+    Man(ManArguments),
     /// Lay a model out in the canonical form (not built yet)
     Fmt(FmtArguments),
 }
@@ -122,7 +135,7 @@ pub(super) struct PaperArguments {
 }
 
 /// What is written, and where.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(super) struct OutputArguments {
     /// Where the files that run { } names go; made if it is not there
     #[arg(short = 'o', long = "out", value_name = "DIR")]
@@ -142,6 +155,60 @@ pub(super) struct OutputArguments {
     /// Write counts and times here, as JSON
     #[arg(long, value_name = "FILE")]
     pub(super) stats: Option<PathBuf>,
+    /// Write a page here that shows the run: open it in a browser
+    #[arg(long, value_name = "FILE")]
+    pub(super) report: Option<PathBuf>,
+    /// What becomes of the files that run { } names
+    #[arg(skip)]
+    pub(super) named: Outputs,
+}
+
+/// What becomes of the files that `run { }` names.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Outputs {
+    /// They are written.
+    #[default]
+    Written,
+    /// They are left as they are.
+    Left,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ReportArguments {
+    /// The model
+    #[arg(value_name = "MODEL.hy")]
+    pub(super) model: PathBuf,
+    #[command(flatten)]
+    pub(super) settings: SettingArguments,
+    #[command(flatten)]
+    pub(super) engine: EngineArguments,
+    /// Where the page goes; in the current folder, with the model's name, if not given
+    #[arg(short = 'o', long = "out", value_name = "FILE")]
+    pub(super) out: Option<PathBuf>,
+    /// Leave out warnings of this code (repeatable)
+    #[arg(long, value_name = "CODE")]
+    pub(super) allow: Vec<String>,
+    /// Print neither progress nor summary, and no warnings about the model
+    #[arg(short, long)]
+    pub(super) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct PlotArguments {
+    /// A trajectory, an event log, or a model
+    #[arg(value_name = "RUN.csv|MODEL.hy")]
+    pub(super) input: PathBuf,
+    #[command(flatten)]
+    pub(super) settings: SettingArguments,
+    /// Where the picture goes, .svg or .png; in the current folder, with the name of the input, if not given
+    #[arg(short = 'o', long = "out", value_name = "FILE")]
+    pub(super) out: Option<PathBuf>,
+    /// Draw one column against another, as paths in a plane
+    #[arg(long, value_name = "X,Y", value_delimiter = ',')]
+    pub(super) xy: Vec<String>,
+    /// Draw these columns over time; without it the first six
+    #[arg(long, value_name = "A,B,..", value_delimiter = ',', conflicts_with = "xy")]
+    pub(super) columns: Vec<String>,
 }
 
 #[derive(Debug, Args)]
@@ -207,6 +274,9 @@ pub(super) struct ShowArguments {
     /// Which form of the model
     #[arg(long, value_enum)]
     pub(super) stage: Stage,
+    /// The form of the picture of `--stage modes` [default: dot]
+    #[arg(long, value_enum, value_name = "FORM")]
+    pub(super) format: Option<PictureForm>,
     /// Give a param another value, in its declared unit (repeatable)
     #[arg(short = 'p', long = "param", value_name = "NAME=VALUE", value_parser = pair)]
     pub(super) params: Vec<(String, String)>,
@@ -220,6 +290,27 @@ pub(super) struct ExplainArguments {
     /// A code; without one, all codes are listed
     #[arg(value_name = "CODE")]
     pub(super) code: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct NewArguments {
+    /// The model's name; `hyc new robots` writes `robots.hy`
+    #[arg(value_name = "NAME")]
+    pub(super) name: String,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CompletionsArguments {
+    /// The shell
+    #[arg(value_enum, value_name = "SHELL")]
+    pub(super) shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ManArguments {
+    /// The command that the page is about; without one, the program
+    #[arg(value_name = "COMMAND")]
+    pub(super) command: Option<String>,
 }
 
 #[derive(Debug, Args)]
@@ -311,6 +402,29 @@ pub(super) enum Stage {
     Tape,
     /// The input of the machine code generator
     Clif,
+    /// The modes of each agent type, as a diagram
+    Modes,
+}
+
+/// The form of a mode diagram.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum PictureForm {
+    /// For Graphviz
+    Dot,
+    /// A picture
+    Svg,
+}
+
+/// Whether messages have colours.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum ColourWhen {
+    /// Where a person reads, unless NO_COLOR is set or CLICOLOR is 0; CLICOLOR_FORCE has them everywhere
+    #[default]
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
 }
 
 fn integrator(text: &str) -> Result<Integrator, String> {

@@ -15,7 +15,7 @@ fn diagnostic(claim: &FalseAssert, cast: &Cast) -> Diagnostic {
         Some(message) => format!("an assert was false: {message}"),
         None => "an assert was false".into(),
     };
-    let agent = cast.agents.get(claim.agent).map_or("an agent", String::as_str);
+    let agent = cast.agent(claim.agent);
     let mode = if claim.mode.is_empty() { String::new() } else { format!(" in mode {}", claim.mode) };
     let first = format!("first at t = {time} s for `{agent}`{mode}");
     let mut diagnostic = Diagnostic::warning("HY0590", title).label(claim.span, first);

@@ -50,8 +50,8 @@ pub(super) struct Loaded {
     pub(super) inputs: Vec<PathBuf>,
 }
 
-/// Errors of the user's words or of files, not of the model: a `-p` that cannot be, a data file that cannot be read.
-const USAGE_CODES: [&str; 3] = ["HY0260", "HY0261", "HY0272"];
+/// Errors of the user's words or of files, not of the model: a `-p` that cannot be, a file that cannot be read.
+const USAGE_CODES: [&str; 4] = ["HY0215", "HY0260", "HY0261", "HY0272"];
 
 impl Loaded {
     /// The exit code where there is no model.
@@ -92,7 +92,7 @@ fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The data files of a model, found relative to it.
+/// The data files and imports of a model, found relative to it.
 struct Folder {
     folder: PathBuf,
     inputs: Vec<PathBuf>,

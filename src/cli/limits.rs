@@ -21,10 +21,12 @@ impl Limits {
             let small = u32::try_from(*value).unwrap_or(u32::MAX);
             let size = usize::try_from(*value).unwrap_or(usize::MAX);
             match name.as_str() {
-                "max_agents" => model.agents_max = size,
+                "max_agents" => (model.agents_max, run.agents_max) = (size, size),
                 "max_values" => model.values_max = size,
                 "max_states" => model.states_max = size,
                 "max_modes" => model.modes_max = size,
+                "max_table_rows" => model.table_rows_max = size,
+                "max_configurations" => model.configurations_max = size,
                 "max_cells" => model.cells_max = size,
                 "max_evaluations" => model.evaluations_max = *value,
                 "max_operations" => model.operations_max = *value,
@@ -34,7 +36,7 @@ impl Limits {
                 "max_guards" => run.guards_max = size,
                 "max_pieces" => run.pieces_max = small,
                 _ => {
-                    let of_model = "max_agents, max_values, max_states, max_modes, max_cells, max_evaluations, max_operations";
+                    let of_model = "max_agents, max_values, max_states, max_modes, max_configurations, max_table_rows, max_cells, max_evaluations, max_operations";
                     let of_run = "max_microsteps, zeno_events, max_steps, max_guards, max_pieces";
                     return Err(format!("there is no limit `{name}`; there are {of_model}, {of_run}"));
                 }

@@ -17,9 +17,14 @@ mod warnings;
 mod sarif;
 mod refusal;
 mod algorithm;
+mod watch;
 mod run;
+mod report;
+mod plot;
 mod check;
 mod show;
+mod new;
+mod shell;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -61,12 +66,18 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> Exit {
         Ok(arguments) => arguments,
         Err(error) => return usage(&error),
     };
+    terminal::set_colours(arguments.color);
     let done = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Report(arguments) => report::report(*arguments),
+        Command::Plot(arguments) => plot::plot(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Show(arguments) => show::show(&arguments),
         Command::Explain(arguments) => explain::explain(&arguments),
+        Command::New(arguments) => new::new(&arguments),
+        Command::Completions(arguments) => shell::completions(&arguments),
+        Command::Man(arguments) => shell::man(&arguments),
         Command::Fmt(_) => Err(refusal::FORMATTER.into()),
     };
     done.unwrap_or_else(|refused| {

@@ -27,7 +27,7 @@ pub(super) fn refuse_aggregates(algorithm: Algorithm, program: &Program) -> Resu
     }
     let name = algorithm.name();
     Err(format!(
-        "`{name}` does not take guards with count, sum, min or max over agents that come and go while states flow (their \
+        "`{name}` does not take agents that are created or destroyed, links with an expression, nor guards with count, sum, min or max over agents that come and go while states flow (their \
          `where` compares what flows): such a guard jumps; there is `masim`"
     ))
 }
@@ -38,13 +38,7 @@ fn not_built(option: &str, instead: &str) -> Refused {
 
 /// Refuses a model that neither `until` nor a `stop` ever ends.
 pub(super) fn refuse_endless(model: &Model) -> Result<(), Refused> {
-    let of_types = model.types.iter().flat_map(|ty| {
-        let modes = ty.modes.iter().flat_map(|mode| [&mode.entry, &mode.exit]);
-        modes.chain(ty.transitions.iter().map(|transition| &transition.actions))
-    });
-    let of_pairs = model.interactions.iter().flat_map(|interaction| &interaction.transitions);
-    let mut lists = of_types.chain(of_pairs.map(|transition| &transition.actions));
-    if model.run.until.is_some() || lists.any(|actions| stops(actions)) {
+    if model.run.until.is_some() || model.action_lists().any(stops) {
         return Ok(());
     }
     Err("the run has no end: write `run { until 10 }`, add `--until 10`, or let an action `stop`".into())
@@ -55,5 +49,6 @@ fn stops(actions: &[Action]) -> bool {
         Action::Stop { .. } => true,
         Action::If { then, otherwise, .. } => stops(then) || stops(otherwise),
         Action::Assign { .. } | Action::Draw { .. } | Action::Emit { .. } | Action::Goto { .. } => false,
+        Action::Create(_) | Action::Destroy { .. } => false,
     })
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use super::algorithm::{integrator, single};
-use super::arguments::{AssertLevel, BackendName, RunArguments, SettingArguments};
+use super::arguments::{AssertLevel, BackendName, Outputs, RunArguments, SettingArguments};
 use super::input::{Loaded, load, name_of};
 use super::limits::Limits;
 use super::progress::ProgressLine;
@@ -13,15 +13,21 @@ use super::refusal::{refuse_aggregates, refuse_endless, refuse_engine};
 use super::sinks::{Sinks, prepare_folder};
 use super::terminal::{complain, say, say_aside, tell};
 use super::warnings::Levels;
+use super::watch::{Watched, watch};
 use super::{Exit, Refused, claims};
 use crate::base::{Diagnostic, SourceMap};
 use crate::calculus;
-use crate::codegen::program::Program;
+use crate::codegen::program::{self, LetValue, Program, Record, VarRef};
 use crate::codegen::{self, Backend};
-use crate::model::{Model, Settings};
-use crate::output::{Cast, Report, Sink, Tables, TypeColumns, statistics, summary};
+use crate::model::ir::Integrator;
+use crate::model::{self, Model, Settings};
+use crate::output::{Cast, Column, Kind, Report, Sink, Tables, TypeColumns, statistics, summary};
+use crate::picture::{Recording, Scene, page};
 use crate::runtime::observe::{End, Outcome};
 use crate::runtime::{self, Algorithm};
+
+/// How many of the agents with most events are told.
+const BUSIEST: usize = 8;
 
 /// Set by the user's interruption.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -33,12 +39,16 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     let limits = Limits::new(&arguments.engine.limits)?;
     let levels = Levels::new(&arguments.allow, &[])?;
     let begun = Instant::now();
-    let loaded = load(&arguments.model, &settings_of(arguments, &limits)?)?;
+    let integrator = integrator(arguments.engine.algorithm, arguments.engine.integrator)?;
+    let record_all = if arguments.outputs.record.is_some() { RecordAll::Yes } else { RecordAll::No };
+    let settings = settings_of(&arguments.settings, integrator, record_all, &limits);
+    let loaded = load(&arguments.model, &settings)?;
     tell(&loaded.sources, &loaded.diagnostics);
     let exit = loaded.exit();
     let Loaded { sources, mut warnings, model: Some(model), inputs, .. } = loaded else { return Ok(exit) };
     refuse_endless(&model)?;
-    let program = match compile(&model, arguments.engine.backend, &mut warnings) {
+    let read_seconds = begun.elapsed().as_secs_f64();
+    let mut program = match compile(&model, arguments.engine.backend, &mut warnings) {
         Ok(program) => program,
         Err(diagnostics) => {
             tell(&sources, &diagnostics);
@@ -50,14 +60,34 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     }
     refuse_aggregates(algorithm, &program)?;
     let compile_seconds = begun.elapsed().as_secs_f64();
+    let code_seconds = program.cost.seconds;
+    let compile_parts = [
+        ("reading", read_seconds),
+        ("equations", compile_seconds - read_seconds - code_seconds),
+        (code_of(arguments.engine.backend), code_seconds),
+    ];
 
     let cast = cast_of(&program);
     let mut sinks = Sinks::new(&inputs);
+    let report_sink = arguments.outputs.report.as_deref().map(|path| sinks.open(path)).transpose()?;
+    let (record, watched) = report_sink.as_ref().map(|_| watch(&model, &program)).transpose()?.unzip();
+    let diagrams = model::diagrams(&model, &sources);
+    let n_records = program.run.records.len();
+    let mut recording = None;
+    if let Some(Watched { types, .. }) = &watched {
+        recording = Some(Recording::new(&cast, types, &diagrams, n_records));
+    }
     let (mut tables, stats_sink) = open_outputs(arguments, &program, &cast, &sources, &mut sinks)?;
+    program.run.records.extend(record);
+    if let Some(recording) = &mut recording {
+        tables.also(recording);
+    }
     let begun = Instant::now();
     let outcome = simulate(algorithm, &program, &limits.run, &mut tables, arguments.quiet)?;
     let run_seconds = begun.elapsed().as_secs_f64();
-    let flushed = tables.flush();
+    let flushed = tables.finish();
+    let (busiest, writing_seconds) = (tables.busiest(BUSIEST), tables.writing().as_secs_f64());
+    drop(tables);
 
     let report = Report {
         model: &name_of(&arguments.model),
@@ -76,6 +106,9 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
         functions: program.cost.functions,
         instructions: program.cost.instructions,
         code_bytes: program.cost.code_bytes,
+        busiest: &busiest,
+        compile_parts: &compile_parts,
+        writing_seconds,
         compile_seconds,
         run_seconds,
         files: sinks.names(),
@@ -85,8 +118,21 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     if let Some(sink) = stats_sink {
         write_whole(sink, &statistics(&report))?;
     }
+    let summary = summary(&report);
+    if let (Some(sink), Some(watched), Some(mut recording)) = (report_sink, &watched, recording) {
+        recording.close();
+        let scene = Scene {
+            title: &name_of(Path::new(arguments.model.file_name().unwrap_or_default())),
+            source: sources.files().first().map_or("", |file| &file.text),
+            diagrams: &diagrams,
+            recording: &recording,
+            columns: &watched.columns,
+            plane: watched.plane,
+            summary: &summary,
+        };
+        write_whole(sink, &page(&scene))?;
+    }
     if !arguments.quiet {
-        let summary = summary(&report);
         if sinks.on_stdout() { say_aside(&summary) } else { say(&summary)? }
     }
     let exit = conclude(&outcome, &sources, arguments.asserts);
@@ -97,12 +143,22 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
 }
 
 /// What the command line lays over the model.
-fn settings_of(arguments: &RunArguments, limits: &Limits) -> Result<Settings, Refused> {
-    let SettingArguments { params, until, tolerance, absolute, seed } = arguments.settings.clone();
-    let integrator = integrator(arguments.engine.algorithm, arguments.engine.integrator)?;
-    let record_all = arguments.outputs.record.is_some();
-    let limits = limits.model;
-    Ok(Settings { params, until, tolerance, absolute, seed, integrator, record_all, limits })
+pub(super) fn settings_of(
+    given: &SettingArguments,
+    integrator: Option<Integrator>,
+    record_all: RecordAll,
+    limits: &Limits,
+) -> Settings {
+    let SettingArguments { params, until, tolerance, absolute, seed } = given.clone();
+    let record_all = record_all == RecordAll::Yes;
+    Settings { params, until, tolerance, absolute, seed, integrator, record_all, limits: limits.model }
+}
+
+/// Whether a model that records nothing records everything.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RecordAll {
+    Yes,
+    No,
 }
 
 /// The lower floors, one after the other; adds to the warnings about the model.
@@ -131,7 +187,10 @@ fn open_outputs<'a>(
     let wanted = &arguments.outputs;
     let folder = prepare_folder(wanted.folder.as_deref())?;
     let mut tables = Tables::new(cast);
-    let events = wanted.events.clone().or_else(|| program.run.events.as_ref().map(|file| folder.join(file)));
+    let named = wanted.named == Outputs::Written;
+    let in_folder = |file: &String| folder.join(file);
+    let events =
+        wanted.events.clone().or_else(|| program.run.events.as_ref().filter(|_| named).map(in_folder));
     if let Some(path) = events {
         tables.event_log(sinks.open(&path)?).map_err(|error| error.to_string())?;
     }
@@ -141,13 +200,14 @@ fn open_outputs<'a>(
             "run {{ }} has {n_records} records with files of their own: leave `--record` out"
         ));
     }
-    for record in &program.run.records {
+    for record in program.run.records.iter().filter(|_| named) {
         let path = match (&wanted.record, &record.file) {
             (Some(path), _) => path.clone(),
             (None, Some(file)) => folder.join(file),
             (None, None) => return Err("a `record` of the model names no file: add `--record FILE`".into()),
         };
-        tables.trajectory(sinks.open(&path)?, &record.columns).map_err(|error| error.to_string())?;
+        let columns = columns_of(program, record);
+        tables.trajectory(sinks.open(&path)?, &columns).map_err(|error| error.to_string())?;
     }
     if let Some(path) = &wanted.final_states {
         tables.final_states(sinks.open(path)?).map_err(|error| error.to_string())?;
@@ -160,7 +220,7 @@ fn open_outputs<'a>(
 }
 
 /// Runs until its end or the user's interruption; a second interruption ends the process at once.
-fn simulate(
+pub(super) fn simulate(
     algorithm: Algorithm,
     program: &Program,
     limits: &runtime::Limits,
@@ -202,8 +262,33 @@ fn conclude(outcome: &Outcome, sources: &SourceMap, asserts: AssertLevel) -> Exi
     }
 }
 
+/// The columns of a record: each has room for what the agents of any type have there.
+fn columns_of(program: &Program, record: &Record) -> Vec<Column> {
+    let kind = |k: usize| {
+        let of_types = program.types.iter().zip(&record.variables);
+        let kinds = of_types.filter_map(|(ty, variables)| {
+            Some(match variables[k]? {
+                VarRef::State(_) => Kind::Number,
+                VarRef::Discrete(number) => kind_of(&ty.discretes[number]),
+                VarRef::Param(number) => kind_of(&ty.params[number]),
+                VarRef::Link(_) => Kind::Text,
+                VarRef::Let(number) => match ty.lets[number].value {
+                    LetValue::Condition(_) => Kind::Bool,
+                    LetValue::Number(_) => kind_of(&ty.lets[number].column),
+                },
+            })
+        });
+        kinds.reduce(Kind::with).unwrap_or(Kind::Number)
+    };
+    record.columns.iter().enumerate().map(|(k, name)| Column::new(name, kind(k))).collect()
+}
+
+fn kind_of(column: &program::Column) -> Kind {
+    if column.boolean { Kind::Bool } else { Kind::Number }
+}
+
 /// The names of the program's agents and columns.
-fn cast_of(program: &Program) -> Cast {
+pub(super) fn cast_of(program: &Program) -> Cast {
     let mut agents = vec![String::new(); program.population.agents.len()];
     for block in &program.population.blocks {
         for k in 0..block.count {
@@ -212,10 +297,20 @@ fn cast_of(program: &Program) -> Cast {
         }
     }
     let types = program.types.iter().map(|ty| TypeColumns {
+        name: ty.name.clone(),
         states: ty.states.iter().map(|column| column.name.clone()).collect(),
         discretes: ty.discretes.iter().map(|column| column.name.clone()).collect(),
+        discrete_kinds: ty.discretes.iter().map(kind_of).collect(),
     });
     Cast { agents, types: types.collect() }
+}
+
+/// What code generation makes.
+fn code_of(backend: BackendName) -> &'static str {
+    match backend {
+        BackendName::Jit => "machine code",
+        BackendName::Interp => "tapes",
+    }
 }
 
 fn backend_name(backend: BackendName) -> &'static str {

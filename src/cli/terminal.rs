@@ -1,8 +1,10 @@
 //! What is said on standard output and standard error.
 
 use std::io::{self, IsTerminal, Write};
+use std::sync::OnceLock;
 
 use super::Refused;
+use super::arguments::ColourWhen;
 use crate::base::render::{Colours, render};
 use crate::base::{Diagnostic, SourceMap};
 
@@ -39,8 +41,26 @@ pub(super) fn tell(sources: &SourceMap, diagnostics: &[Diagnostic]) {
     }
 }
 
-/// Colours where a person reads, unless the environment asks for none (no-color.org).
+/// What the user says about colours; said once, before anything else is.
+static WHEN: OnceLock<ColourWhen> = OnceLock::new();
+
+/// Takes note of `--color`.
+pub(super) fn set_colours(when: ColourWhen) {
+    // Only the first word counts, and there is only one.
+    let _ = WHEN.set(when);
+}
+
+/// Colours as `--color` says; else, in this order, none if NO_COLOR is set (no-color.org), some if CLICOLOR_FORCE is and not 0,
+/// none if CLICOLOR is 0 (bixense.com/clicolors), and some where a person reads.
 fn colours() -> Colours {
-    let refused = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-    if io::stderr().is_terminal() && !refused { Colours::Ansi } else { Colours::None }
+    let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
+    let wanted = match WHEN.get().copied().unwrap_or_default() {
+        ColourWhen::Always => true,
+        ColourWhen::Never => false,
+        ColourWhen::Auto if set("NO_COLOR").is_some() => false,
+        ColourWhen::Auto if set("CLICOLOR_FORCE").is_some_and(|value| value != "0") => true,
+        ColourWhen::Auto if set("CLICOLOR").is_some_and(|value| value == "0") => false,
+        ColourWhen::Auto => io::stderr().is_terminal(),
+    };
+    if wanted { Colours::Ansi } else { Colours::None }
 }

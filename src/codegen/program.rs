@@ -5,10 +5,11 @@ use crate::calculus::graph::Graph;
 use crate::calculus::system::Function;
 pub use crate::calculus::system::FunctionId;
 pub use crate::calculus::system::{
-    ActionList, ActionStep, AgentSystem, Aggregate, Atom, ClaimKind, ClaimSystem, Column, Condition,
-    Destination, Distribution, Flow, Fold, Frame, Guard, Inside, Integrator, InteractionSystem, Jumps, Kink,
-    KinkKind, Layout, LetSystem, LetValue, ModeSystem, Near, PairTransition, Population, Quantified, Range,
-    Record, Relation, Run, Sender, Slot, Target, Term, TransitionSystem, Trigger, VarRef,
+    ActionList, ActionStep, AgentSystem, Aggregate, Atom, Birth, ClaimKind, ClaimSystem, Column, Condition,
+    Destination, Distribution, Flow, Fold, Frame, Guard, Initials, Inside, Integrator, InteractionSystem,
+    Jumps, Kink, KinkKind, Layout, LetSystem, LetValue, LinkUpdate, ModeSystem, Near, PairTransition,
+    Population, Quantified, Range, Record, Relation, Run, Sender, Slot, Source, Target, Term,
+    TransitionSystem, Trigger, VarRef, Whither,
 };
 use crate::codegen::kernel::{Kernel, StepKernel};
 use crate::codegen::series::SeriesTape;
@@ -54,6 +55,16 @@ pub struct Cost {
 }
 
 impl Program {
+    /// All lists of actions.
+    pub fn action_lists(&self) -> impl Iterator<Item = &ActionList> {
+        let of_types = self.types.iter().flat_map(|ty| {
+            let modes = ty.modes.iter().flat_map(|mode| [&mode.entry, &mode.exit]);
+            modes.chain(ty.transitions.iter().map(|transition| &transition.actions))
+        });
+        let pairs = self.interactions.iter().flat_map(|interaction| &interaction.transitions);
+        of_types.chain(pairs.map(|pair| &pair.transition.actions))
+    }
+
     /// The kernel of a function.
     pub fn kernel(&self, function: FunctionId) -> &Kernel {
         &self.kernels[function.index()]

@@ -3,9 +3,8 @@
 use rustc_hash::FxHashMap;
 
 use super::context::{Context, Home, Member, Scope, Value};
-use super::draw::Given;
 use super::error::{ActionError, NameError};
-use super::ir::{Action, ExprKind, TypeId, VarRef};
+use super::ir::{Action, ExprKind, Given, TypeId, VarRef};
 use super::limits;
 use super::suggest::closest;
 use super::types::{Slot, Ty};
@@ -47,14 +46,8 @@ impl<'a> Context<'a> {
         let span = item.span;
         match &item.kind {
             ActionKind::Assign { place, given } => self.assignment(scope, place, given, span, written),
-            ActionKind::Create(_) => {
-                self.refuse("`create` actions", span);
-                None
-            }
-            ActionKind::Destroy(_) => {
-                self.refuse("`destroy` actions", span);
-                None
-            }
+            ActionKind::Create(constructor) => self.create(scope, constructor),
+            ActionKind::Destroy(agent) => self.destroy(scope, agent, span),
             ActionKind::Emit { event, args, delay } => {
                 self.emission(scope, event, args, delay.as_ref(), span)
             }

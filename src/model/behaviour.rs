@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::actions::Written;
 use super::context::{Context, Home, Meaning, Member, Progress, Scope};
 use super::error::{ModeError, NameError};
-use super::ir::{Action, Claim, ModeId, TypeId, VarRef};
+use super::ir::{Action, AgentType, Claim, ModeId, TypeId, VarRef};
 use super::suggest::closest;
 use super::types::{Slot, Ty};
 use crate::base::Span;
@@ -50,7 +50,7 @@ impl<'a> Context<'a> {
     pub fn mode_items(&self, ty: TypeId, mode: ModeId) -> Vec<&'a BodyItem> {
         let names = &self.agents[ty.index()];
         match names.modes[mode.index()] {
-            Some(item) => item.items.iter().collect(),
+            Some(items) => items.iter().collect(),
             None => {
                 let body = |part: &'a AgentItem| match part {
                     AgentItem::Body(item) => Some(item),
@@ -168,24 +168,28 @@ impl<'a> Context<'a> {
         None
     }
 
-    /// Every state has exactly one flow in every leaf mode: its own or that of a mode around it.
+    /// Every state has exactly one flow in every leaf mode, of all regions together: the leaf's own or that of a mode around it.
     fn check_flows(&mut self, ty: TypeId) {
+        if self.agents[ty.index()].incomplete {
+            return;
+        }
         let mut missing: FxHashMap<usize, Vec<(String, Span)>> = FxHashMap::default();
         let mut twice: Vec<(usize, Span, Span)> = Vec::new();
         let model = &self.model.types[ty];
-        for (mode, leaf) in model.modes.iter_enumerated().filter(|(_, mode)| mode.children.is_empty()) {
+        let leaves = model.leaves();
+        for number in 0..model.n_configurations() {
+            let chosen = AgentType::configuration(&leaves, number);
             let mut flows: FxHashMap<usize, Span> = FxHashMap::default();
-            let mut around = Some(mode);
-            while let Some(id) = around {
-                for &(state, _, span) in &model.modes[id].flow {
+            for mode in model.active(&chosen).into_iter().rev() {
+                for &(state, _, span) in &model.modes[mode].flow {
                     if let Some(inner) = flows.insert(state, span) {
                         twice.push((state, inner, span));
                     }
                 }
-                around = model.modes[id].parent;
             }
             for state in (0..model.states.len()).filter(|state| !flows.contains_key(state)) {
-                missing.entry(state).or_default().push((leaf.path.clone(), leaf.span));
+                let path = model.path(&chosen);
+                missing.entry(state).or_default().push((path, model.modes[chosen[0]].span));
             }
         }
         twice.sort_unstable();
@@ -193,9 +197,6 @@ impl<'a> Context<'a> {
         for (state, span, first) in twice {
             let state = self.model.types[ty].states[state].name.clone();
             self.report(ModeError::TwoFlows { state, span, first });
-        }
-        if self.agents[ty.index()].incomplete {
-            return;
         }
         for state in 0..self.model.types[ty].states.len() {
             let Some(modes) = missing.remove(&state) else { continue };

@@ -119,26 +119,26 @@ impl Pass<'_, '_> {
             | ExprKind::Rising(_)
             | ExprKind::Crossing(_) => Measure::Unchecked,
         };
-        match self.context.quantities.get(&id) {
+        match self.context.quantities.get(id) {
             None | Some(Quantity::Of(_)) => computed,
             Some(Quantity::As(_)) => computed.named(),
             Some(Quantity::Unchecked) => Measure::Unchecked,
-            Some(Quantity::Declared { dimension, .. }) => Measure::Known(*dimension),
+            Some(Quantity::Declared { dimension, .. }) => Measure::Known(dimension),
         }
     }
 
     fn number(&self, id: ExprId) -> Measure {
-        match self.context.quantities.get(&id) {
-            Some(&Quantity::As(other)) if other == id => Measure::Unchecked,
-            Some(&quantity) => self.quantity_measure(quantity),
+        match self.context.quantities.get(id) {
+            Some(Quantity::As(other)) if other == id => Measure::Unchecked,
+            Some(quantity) => self.quantity_measure(quantity),
             None if self.context.facts[id.index()].bare => Measure::Bare,
             None => Measure::Unchecked,
         }
     }
 
     fn local(&self, id: ExprId, number: usize, frame: Option<&Frame>) -> Measure {
-        match (self.context.quantities.get(&id), frame) {
-            (Some(Quantity::Declared { dimension, .. }), _) => Measure::Known(*dimension),
+        match (self.context.quantities.get(id), frame) {
+            (Some(Quantity::Declared { dimension, .. }), _) => Measure::Known(dimension),
             (_, Some(frame)) => frame.measures[number],
             (_, None) => Measure::Unchecked,
         }

@@ -5,14 +5,16 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::Files;
 use super::evaluate::Evaluator;
 use super::ir::{
     BinderId, Expr, ExprId, ExprKind, FunctionId, InteractionId, ModeId, Model, Operands, TypeId, VarRef,
 };
 use super::limits;
 use super::operands::for_each_operand;
+use super::quantities::Quantities;
 use super::types::{Quantity, Slot, Ty};
-use crate::base::{Diagnostic, SourceMap, Span};
+use crate::base::{Diagnostic, FileId, SourceMap, Span};
 use crate::math::Op;
 use crate::syntax::ast;
 
@@ -171,8 +173,8 @@ pub(super) struct AgentNames<'a> {
     pub events: Vec<Vec<Slot>>,
     /// Where the dimensions of the `let`s come from, by their numbers in the product.
     pub lets: Vec<Quantity>,
-    /// The modes' texts, by number; none for the root.
-    pub modes: Vec<Option<&'a ast::Mode>>,
+    /// The parts of the texts of modes and regions, by number; none for the root.
+    pub modes: Vec<Option<&'a [ast::BodyItem]>>,
     /// The `let`s of each mode; those of the root are members.
     pub mode_lets: Vec<FxHashMap<&'a str, usize>>,
     /// Parts of it are not supported, so what seems to be missing may be there.
@@ -220,6 +222,8 @@ pub(super) struct Scope<'a> {
     pub bound: Vec<(&'a str, BinderId)>,
     /// Names bound by `on`: what the message carries.
     pub received: Vec<(&'a str, Slot)>,
+    /// Names bound by a `nearest` of the guard, with its link.
+    pub nearest: Vec<(&'a str, Value)>,
 }
 
 /// Whose text an expression belongs to.
@@ -242,7 +246,7 @@ pub(super) enum Home {
 impl Scope<'_> {
     /// A scope without names of its own.
     pub fn of(home: Home) -> Self {
-        Scope { home, locals: Vec::new(), bound: Vec::new(), received: Vec::new() }
+        Scope { home, locals: Vec::new(), bound: Vec::new(), received: Vec::new(), nearest: Vec::new() }
     }
 }
 
@@ -260,12 +264,16 @@ pub(super) struct Goal {
 pub(super) struct Context<'a> {
     /// The texts; the command line's values are added when they are wrong.
     pub sources: &'a mut SourceMap,
+    /// Where data files come from.
+    pub files: &'a mut dyn Files,
+    /// Data files by their names, once they are opened.
+    pub opened: FxHashMap<String, FileId>,
     /// The product as far as it is there.
     pub model: Model,
     /// By expression.
     pub facts: Vec<Facts>,
     /// Where the dimensions of numbers, arguments and named expressions come from.
-    pub quantities: FxHashMap<ExprId, Quantity>,
+    pub quantities: Quantities,
     /// What must have a certain dimension.
     pub goals: Vec<Goal>,
     /// The names of the file.
@@ -288,7 +296,7 @@ pub(super) struct Context<'a> {
     pub overrides: Vec<(String, String)>,
     /// Parameters and discrete variables whose values some block takes from a data file.
     pub from_data: FxHashSet<(TypeId, VarRef)>,
-    /// Something is imported, so what seems to be missing may be there.
+    /// Something imported could not be read, so what seems to be missing may be there.
     pub imports: bool,
     /// What has been found wrong.
     pub diagnostics: Vec<Diagnostic>,
@@ -298,12 +306,14 @@ pub(super) struct Context<'a> {
 
 impl<'a> Context<'a> {
     /// A context without names.
-    pub fn new(sources: &'a mut SourceMap, settings: &super::Settings) -> Self {
+    pub fn new(sources: &'a mut SourceMap, files: &'a mut dyn Files, settings: &super::Settings) -> Self {
         Self {
             sources,
+            files,
+            opened: FxHashMap::default(),
             model: Model { limits: settings.limits, ..Model::default() },
             facts: Vec::new(),
-            quantities: FxHashMap::default(),
+            quantities: Quantities::default(),
             goals: Vec::new(),
             globals: FxHashMap::default(),
             definitions: Vec::new(),

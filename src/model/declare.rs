@@ -1,4 +1,4 @@
-//! Pass 1: every name that the file declares, with types, units and the trees of modes; no expression is read yet.
+//! Pass 1: every name that the files declare, with types, units and the trees of modes; no expression is read yet.
 
 use rustc_hash::FxHashMap;
 
@@ -6,14 +6,14 @@ use super::context::{
     AgentNames, Body, Context, Definition, Global, GlobalKind, Member, PairNames, Progress,
 };
 use super::error::{LimitError, NameError, TypeError};
-use super::ir::{AgentType, Event, Interaction, Link, Mode, ModeId, Type, TypeId, Variable};
+use super::ir::{AgentType, Event, Initials, Interaction, Link, Mode, ModeId, Type, TypeId, Variable};
 use super::types::{Quantity, Slot, Ty};
 use crate::base::{Arena, Span};
 use crate::syntax::ast::{self, AgentItem, BodyItem, Item, VariableKind};
 
 /// Declares everything.
-pub(super) fn declare<'a>(context: &mut Context<'a>, file: &'a ast::Ast) {
-    context.declare_globals(file);
+pub(super) fn declare<'a>(context: &mut Context<'a>, items: &[&'a Item]) {
+    context.declare_globals(items);
     for number in 0..context.agents.len() {
         context.declare_members(TypeId::new(number));
     }
@@ -23,14 +23,13 @@ pub(super) fn declare<'a>(context: &mut Context<'a>, file: &'a ast::Ast) {
 }
 
 impl<'a> Context<'a> {
-    fn declare_globals(&mut self, file: &'a ast::Ast) {
+    fn declare_globals(&mut self, items: &[&'a Item]) {
         let (mut system, mut run) = (None, None);
-        for item in &file.items {
+        self.globals.reserve(items.len());
+        self.definitions.reserve(items.len());
+        for item in items {
             match item {
-                Item::Import(import) => {
-                    self.imports = true;
-                    self.refuse("imports", import.span);
-                }
+                Item::Import(_) => {}
                 Item::Property(property) => self.refuse("properties", property.span),
                 Item::Param(param) => self.declare_definition(&param.name, Body::Param(param)),
                 Item::Let(item) => self.declare_definition(&item.name, Body::Let(item)),
@@ -88,6 +87,7 @@ impl<'a> Context<'a> {
             depth: 0,
             children: Vec::new(),
             initial: None,
+            is_region: false,
             flow: Vec::new(),
             invariants: Vec::new(),
             asserts: Vec::new(),
@@ -105,6 +105,7 @@ impl<'a> Context<'a> {
             events: Vec::new(),
             lets: Vec::new(),
             declared: Vec::new(),
+            initials: Initials::default(),
             modes: Arena::from_iter([root]),
             transitions: Vec::new(),
         });
@@ -142,10 +143,7 @@ impl<'a> Context<'a> {
                 }
                 AgentItem::Link(link) => self.declare_link(ty, link),
                 AgentItem::Event(event) => self.declare_event(ty, event),
-                AgentItem::Region(region) => {
-                    self.agents[ty.index()].incomplete = true;
-                    self.refuse("regions", region.span);
-                }
+                AgentItem::Region(_) => {}
                 AgentItem::Body(BodyItem::Let(item)) => {
                     let number = self.add_definition(&item.name, Body::AgentLet(ty, ModeId::new(0), item));
                     self.declare_member(ty, &item.name, Member::Let(number));
@@ -157,7 +155,13 @@ impl<'a> Context<'a> {
             AgentItem::Body(item) => Some(item),
             AgentItem::Variables(_) | AgentItem::Link(_) | AgentItem::Event(_) | AgentItem::Region(_) => None,
         });
+        let regions = item.items.iter().filter_map(|part| match part {
+            AgentItem::Region(region) => Some(region),
+            AgentItem::Variables(_) | AgentItem::Link(_) | AgentItem::Event(_) | AgentItem::Body(_) => None,
+        });
+        self.declare_regions(ty, regions);
         self.declare_modes(ty, ModeId::new(0), body);
+        self.check_regions(ty);
     }
 
     fn declare_member(&mut self, ty: TypeId, name: &'a ast::Name, member: Member) {
@@ -184,7 +188,8 @@ impl<'a> Context<'a> {
                 }
                 let links = &mut self.model.types[ty].links;
                 let span = formal.name.span;
-                links.push(Link { name: formal.name.text.clone(), ty: target, required: true, span });
+                let name = formal.name.text.clone();
+                links.push(Link { name, ty: target, required: true, cases: Vec::new(), span });
                 let number = links.len() - 1;
                 self.declare_member(ty, &formal.name, Member::Link(number));
             }
@@ -274,27 +279,24 @@ impl<'a> Context<'a> {
     }
 
     fn declare_link(&mut self, ty: TypeId, item: &'a ast::Link) {
-        if let Some(value) = &item.value {
-            self.refuse("links with an expression of their own", value.span);
-        }
-        let target = match &item.target {
+        let of_value = item.value.as_ref().and_then(|value| self.link_type(value));
+        let target = match item.target.as_ref().or(of_value) {
             Some(name) => self.agent_named(name),
             None => {
-                if item.value.is_none() {
-                    self.report(TypeError::NotAllowed {
-                        what: "a link",
-                        found: "without a type".to_string(),
-                        span: item.span,
-                        help: "say what it leads to: `link lead: Car`",
-                    });
-                }
+                self.report(TypeError::NotAllowed {
+                    what: "a link",
+                    found: "without a type".to_string(),
+                    span: item.span,
+                    help: "say what it leads to: `link lead: Car`",
+                });
                 None
             }
         };
         // Without a known type the link leads to agents of its own kind: some member must exist, and the model is refused anyway.
         let links = &mut self.model.types[ty].links;
         let span = item.name.span;
-        links.push(Link { name: item.name.text.clone(), ty: target.unwrap_or(ty), required: false, span });
+        let (name, cases) = (item.name.text.clone(), Vec::new());
+        links.push(Link { name, ty: target.unwrap_or(ty), required: false, cases, span });
         let number = links.len() - 1;
         self.declare_member(ty, &item.name, Member::Link(number));
     }

@@ -4,6 +4,7 @@
 //! would recurse. The pass therefore starts with an order guessed from names alone, which leaves few lookups to wait.
 
 use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 
 use super::context::{Body, Context, Home, Meaning, Progress, Scope, Signature, Value};
 use super::error::{NameError, TypeError, ValueError};
@@ -26,23 +27,27 @@ pub(super) fn define(context: &mut Context) {
     context.check_overrides();
 }
 
+/// Numbers of definitions, of which there are few.
+type Few = SmallVec<[usize; 2]>;
+
 impl<'a> Context<'a> {
     fn guessed_order(&self) -> Vec<usize> {
-        let mut by_name: FxHashMap<&str, Vec<usize>> = FxHashMap::default();
+        let mut by_name: FxHashMap<&str, Few> = FxHashMap::default();
+        by_name.reserve(self.definitions.len());
         for (number, definition) in self.definitions.iter().enumerate() {
             by_name.entry(&definition.name.text).or_default().push(number);
         }
         // A name that many definitions share says little about which one is meant.
         by_name.retain(|_, numbers| numbers.len() <= 8);
-        let needs = |body: &Body<'a>| {
-            let mut names = Vec::new();
-            names_in(body.value(), &mut names);
+        let mut names = Vec::new();
+        let needs = self.definitions.iter().map(|definition| {
+            names.clear();
+            names_in(definition.body.value(), &mut names);
             names.sort_unstable();
             names.dedup();
             names.iter().filter_map(|name| by_name.get(name)).flatten().copied().collect()
-        };
-        let needs = self.definitions.iter().map(|definition| needs(&definition.body)).collect::<Vec<_>>();
-        in_order_of_need(&needs)
+        });
+        in_order_of_need(&needs.collect::<Vec<Few>>())
     }
 
     /// What a definition means, for a text that mentions it.
@@ -209,7 +214,9 @@ impl<'a> Context<'a> {
     /// A `let` whose users share its expression.
     fn shared(&mut self, value: Value, slot: Option<Slot>) -> Meaning {
         let quantity = slot.map_or(Quantity::As(value.id), |slot| slot.quantity());
-        self.quantities.entry(value.id).or_insert(quantity);
+        if self.quantities.get(value.id).is_none() {
+            self.quantities.insert(value.id, quantity);
+        }
         Meaning::Shared(value)
     }
 

@@ -3,47 +3,12 @@
 use super::context::{Context, Scope};
 use super::error::{TypeError, ValueError};
 use super::evaluate::Known;
-use super::ir::ExprId;
+use super::ir::Draw;
 use super::types::{Slot, Ty};
 use super::units::Unit;
 use crate::base::Diagnostic;
 use crate::math::draw::{Distribution, Key};
 use crate::syntax::ast;
-
-/// What a text gives a variable.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Given {
-    /// `= value`
-    Value(ExprId),
-    /// `~ distribution`
-    Draw(Draw),
-}
-
-/// A distribution with its parameters.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Draw {
-    /// From what.
-    pub distribution: Distribution,
-    /// As many as the distribution has; the last is repeated.
-    parameters: [ExprId; 2],
-}
-
-impl Draw {
-    /// The parameters of the distribution.
-    pub fn parameters(&self) -> &[ExprId] {
-        &self.parameters[..self.distribution.parameters().len()]
-    }
-}
-
-impl Given {
-    /// The expressions that must be known first.
-    pub fn exprs(&self) -> Vec<ExprId> {
-        match self {
-            Given::Value(id) => vec![*id],
-            Given::Draw(draw) => draw.parameters().to_vec(),
-        }
-    }
-}
 
 impl<'a> Context<'a> {
     /// `Normal(30, 3)` behind `~`, for a variable of this type; none, and a diagnostic, if it is wrong.
@@ -85,8 +50,8 @@ impl<'a> Context<'a> {
         if slot.ty == Ty::Wrong || values.iter().any(|value| value.ty == Ty::Wrong) {
             return None;
         }
-        let parameters = [values[0].id, values[needed - 1].id];
-        Some(Draw { distribution, parameters })
+        let all = [values[0].id, values[needed - 1].id];
+        Some(Draw { distribution, all })
     }
 
     /// The number that a draw gives the variable of a key, SI.
@@ -99,7 +64,7 @@ impl<'a> Context<'a> {
         if let Some((wrong, needs)) = distribution.problem(&values) {
             let parameter = format!("{} of `{}`", distribution.parameters()[wrong], distribution.name());
             let variable = format!("{}.{}", key.agent, key.variable);
-            let span = self.model.exprs[draw.parameters[wrong]].span;
+            let span = self.model.exprs[draw.all[wrong]].span;
             let error = ValueError::BadDraw { parameter, needs, value: values[wrong], variable, span };
             return Err(Box::new(error.into()));
         }

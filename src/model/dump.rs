@@ -6,8 +6,9 @@ use std::fmt::Write;
 
 use super::formula::{Formulas, Names, number_text};
 use super::ir::{
-    Action, AgentType, Claim, ExprId, Instance, Integrator, Interaction, Mode, ModeId, Model, ParamValue,
-    Population, Record, Run, Transition, Trigger, Type, TypeId, VarRef, Variable,
+    Action, AgentType, Claim, Create, ExprId, Given, Instance, Integrator, Interaction, LinkCase, LinkTarget,
+    Mode, ModeId, Model, ParamValue, Population, Record, Run, Transition, Trigger, Type, TypeId, VarRef,
+    Variable,
 };
 
 /// How many agents of a block are written.
@@ -88,6 +89,9 @@ impl<'m> Writer<'m> {
             let none = if link.required { "" } else { " or none" };
             let target = &self.model.types[link.ty].name;
             self.line(1, &format!("link {}: {target}{none}", link.name));
+            for case in &link.cases {
+                self.link_case(case);
+            }
         }
         for event in &ty.events {
             let params = event.params.iter().map(|Variable { name, ty, unit, scale, .. }| {
@@ -118,7 +122,8 @@ impl<'m> Writer<'m> {
             None => depth,
             Some(parent) => {
                 let initial = if ty.modes[parent].initial == Some(id) { "initial " } else { "" };
-                self.line(depth, &format!("{initial}mode {}", mode.path));
+                let word = if mode.is_region { "region" } else { "mode" };
+                self.line(depth, &format!("{initial}{word} {}", mode.path));
                 depth + 1
             }
         };
@@ -248,8 +253,58 @@ impl<'m> Writer<'m> {
                     let reason = reason.as_ref().map_or(String::new(), |text| format!(" \"{text}\""));
                     self.line(depth, &format!("stop{reason}"));
                 }
+                Action::Create(create) => self.creation(create, names, depth),
+                Action::Destroy { agent, .. } => {
+                    let agent = self.formulas.text(*agent, names);
+                    self.line(depth, &format!("destroy {agent}"));
+                }
             }
         }
+    }
+
+    fn link_case(&mut self, case: &LinkCase) {
+        let names = Names { locals: &[], pair: None };
+        let text = |id: ExprId| self.formulas.text(id, names);
+        let mut line = match &case.target {
+            LinkTarget::Nobody => "none".to_string(),
+            LinkTarget::Agent(agent) => text(*agent),
+            LinkTarget::Nearest { binder, other, filter, key } => {
+                let bound = &self.model.binders[*binder];
+                let other = if *other { "other " } else { "" };
+                let set = &self.model.types[bound.ty].name;
+                let filter = filter.map_or(String::new(), |filter| format!(" where {}", text(filter)));
+                format!("nearest {} in {other}{set}{filter} by {}", bound.name, text(*key))
+            }
+        };
+        if let Some(condition) = case.condition {
+            line.push_str(&format!(" if {}", text(condition)));
+        }
+        self.line(2, &line);
+    }
+
+    fn creation(&mut self, create: &Create, names: Names, depth: usize) {
+        let ty = &self.model.types[create.ty];
+        let mut parts = Vec::new();
+        let given = [(&ty.params, &create.params), (&ty.states, &create.states)];
+        for (variables, given) in given.into_iter().chain([(&ty.discretes, &create.discretes)]) {
+            for (variable, given) in variables.iter().zip(given) {
+                let Some(given) = given else { continue };
+                let texts = given.exprs().into_iter().map(|id| self.formulas.text(id, names));
+                let texts = texts.collect::<Vec<_>>().join(", ");
+                parts.push(match given {
+                    Given::Value(_) => format!("{} = {texts}", variable.name),
+                    Given::Draw(draw) => format!("{} ~ {}({texts})", variable.name, draw.distribution.name()),
+                });
+            }
+        }
+        for (link, agent) in ty.links.iter().zip(&create.links) {
+            if let Some(agent) = agent {
+                parts.push(format!("{} = {}", link.name, self.formulas.text(*agent, names)));
+            }
+        }
+        let path = &ty.modes[create.mode].path;
+        let mode = if path.is_empty() { String::new() } else { format!(" in {path}") };
+        self.line(depth, &format!("create {}({}){mode}", ty.name, parts.join(", ")));
     }
 
     fn interaction(&mut self, item: &'m Interaction) {

@@ -183,7 +183,7 @@ impl<'a> Context<'a> {
             let operand = value.id;
             let value = self.number(negative, value.ty, span);
             self.facts[value.id.index()].bare = self.facts[operand.index()].bare;
-            if let Some(&quantity) = self.quantities.get(&operand) {
+            if let Some(quantity) = self.quantities.get(operand) {
                 self.quantities.insert(value.id, quantity);
             }
             return value;

@@ -3,31 +3,20 @@
 use rustc_hash::FxHashSet;
 
 use super::context::{Context, Home, Scope};
-use super::draw::Given;
 use super::error::{NameError, ValueError};
-use super::ir::{ExprId, ExprKind, TypeId, VarRef};
+use super::ir::{ExprId, ExprKind, Given, Initials, TypeId, VarRef};
 use super::operands::for_each_operand;
 use super::order::{find_circle, in_order_of_need};
 use super::types::{Slot, Ty};
 use crate::base::Span;
 use crate::syntax::ast::{self, AgentItem, GivenKind, VariableKind};
 
-/// What an agent type says about its values at t = 0.
-#[derive(Default)]
-pub(super) struct Initials {
-    /// Defaults of the numeric parameters.
-    pub params: Vec<Option<Given>>,
-    /// Initial values of the states.
-    pub states: Vec<Option<Given>>,
-    /// Initial values of the discrete variables.
-    pub discretes: Vec<Option<Given>>,
-    /// States and discretes, each after those that its initial value reads.
-    pub order: Vec<VarRef>,
-}
-
-/// By agent type.
-pub(super) fn initial_values(context: &mut Context) -> Vec<Initials> {
-    (0..context.agents.len()).map(|number| context.initials(TypeId::new(number))).collect()
+/// Of all agent types.
+pub(super) fn initial_values(context: &mut Context) {
+    for number in 0..context.agents.len() {
+        let ty = TypeId::new(number);
+        context.model.types[ty].initials = context.initials(ty);
+    }
 }
 
 /// What an expression may read while its agent is made.

@@ -3,15 +3,18 @@
 //! Flat data. Expressions lie in one arena, operands before their users. What follows a `param` or a top-level `let`
 //! without agents in it is already a number. Values are SI. Modes form a tree whose root (number 0) is the agent itself.
 
-use crate::base::{Arena, Idx, Span};
+use crate::base::{Arena, FileId, Idx, Span};
+use crate::math::draw::Distribution;
 use crate::math::{Op, Scale};
 pub use crate::model::applied::Operands;
+pub use crate::model::collective::{Aggregate, Quantifier};
 pub use crate::model::integrator::Integrator;
+pub use crate::model::kinds::{Inside, ParamValue};
 use crate::model::limits::Limits;
 
 mod action;
 
-pub use action::{Action, Destination, Inside, Transition, Trigger};
+pub use action::{Action, Create, Destination, Transition, Trigger};
 
 /// Names an [`Expr`].
 pub type ExprId = Idx<Expr>;
@@ -47,6 +50,8 @@ pub struct Model {
     pub run: Run,
     /// What it may ask for.
     pub limits: Limits,
+    /// The files of the text in the order of what they declare: imported ones before those that import them.
+    pub files: Vec<FileId>,
 }
 
 /// A top-level `param`.
@@ -62,15 +67,6 @@ pub struct Param {
     pub value: ParamValue,
     /// Where it is declared.
     pub span: Span,
-}
-
-/// The value of a parameter.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ParamValue {
-    /// A number, SI; booleans are 1 and 0.
-    Number(f64),
-    /// A text.
-    Text(String),
 }
 
 /// The type of a value.
@@ -176,40 +172,6 @@ pub enum ExprKind {
     Crossing(ExprId),
 }
 
-/// The quantifiers that make conditions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Quantifier {
-    /// At least one.
-    Exists,
-    /// All.
-    Forall,
-}
-
-/// The quantifiers that make numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Aggregate {
-    /// How many there are.
-    Count,
-    /// The sum of the terms, added in the order of the agents; 0 of none.
-    Sum,
-    /// The least term; infinite of none.
-    Min,
-    /// The greatest term; minus infinity of none.
-    Max,
-}
-
-impl Aggregate {
-    /// As it is written.
-    pub fn name(self) -> &'static str {
-        match self {
-            Aggregate::Count => "count",
-            Aggregate::Sum => "sum",
-            Aggregate::Min => "min",
-            Aggregate::Max => "max",
-        }
-    }
-}
-
 /// A name bound by a quantifier.
 #[derive(Clone, Debug)]
 pub struct Binder {
@@ -255,33 +217,44 @@ pub struct AgentType {
     pub lets: Vec<Let>,
     /// Recordable names in order of declaration.
     pub declared: Vec<(String, VarRef)>,
+    /// What it says about the values of its agents when they are made.
+    pub initials: Initials,
     /// The tree of modes; number 0 is the root, the agent itself.
     pub modes: Arena<Mode>,
     /// Transitions of all modes in order of declaration in the source.
     pub transitions: Vec<Transition>,
 }
 
-impl AgentType {
-    /// The `rate` transitions, in order.
-    pub fn rates(&self) -> impl Iterator<Item = &Transition> {
-        self.transitions.iter().filter(|transition| matches!(transition.trigger, Trigger::Rate { .. }))
-    }
+/// What an agent type says about the values of its agents when they are made. They may read `index` ([`ExprKind::Local`] 0),
+/// parameters before them, and, but for parameters, variables of the same agent.
+#[derive(Clone, Debug, Default)]
+pub struct Initials {
+    /// Defaults of the numeric parameters.
+    pub params: Vec<Option<Given>>,
+    /// Initial values of the states.
+    pub states: Vec<Option<Given>>,
+    /// Initial values of the discrete variables.
+    pub discretes: Vec<Option<Given>>,
+    /// States and discretes, each after those that its initial value reads.
+    pub order: Vec<VarRef>,
+}
 
-    /// Whether a mode is another one, or inside it.
-    pub fn is_inside(&self, mode: ModeId, other: ModeId) -> bool {
-        std::iter::successors(Some(mode), |&mode| self.modes[mode].parent).any(|around| around == other)
-    }
+/// What a text gives a variable.
+#[derive(Clone, Copy, Debug)]
+pub enum Given {
+    /// `= value`
+    Value(ExprId),
+    /// `~ distribution`
+    Draw(Draw),
+}
 
-    /// The name of a variable.
-    pub fn variable_name(&self, variable: VarRef) -> &str {
-        match variable {
-            VarRef::State(number) => &self.states[number].name,
-            VarRef::Discrete(number) => &self.discretes[number].name,
-            VarRef::Param(number) => &self.params[number].name,
-            VarRef::Link(number) => &self.links[number].name,
-            VarRef::Let(number) => &self.lets[number].name,
-        }
-    }
+/// A distribution with its parameters.
+#[derive(Clone, Copy, Debug)]
+pub struct Draw {
+    /// Which.
+    pub distribution: Distribution,
+    /// As many as the distribution has; the last is repeated.
+    pub all: [ExprId; 2],
 }
 
 /// A variable of an agent type.
@@ -308,6 +281,8 @@ pub struct Link {
     pub ty: TypeId,
     /// A parameter of agent type: never none.
     pub required: bool,
+    /// What it follows from, if it has an expression of its own: the first case that holds says whom it leads to.
+    pub cases: Vec<LinkCase>,
     /// Where it is declared.
     pub span: Span,
 }
@@ -321,6 +296,37 @@ pub struct Event {
     pub params: Vec<Variable>,
     /// Where it is declared.
     pub span: Span,
+}
+
+/// One case of the expression of a link.
+#[derive(Clone, Debug)]
+pub struct LinkCase {
+    /// When it holds; none: always.
+    pub condition: Option<ExprId>,
+    /// Whom the link leads to.
+    pub target: LinkTarget,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// Whom a link leads to.
+#[derive(Clone, Debug)]
+pub enum LinkTarget {
+    /// `none`.
+    Nobody,
+    /// An agent, which may be none.
+    Agent(ExprId),
+    /// `nearest o in other Car where filter by key`: whoever has the least key; none if nobody belongs to the range.
+    Nearest {
+        /// The name it binds, and the set.
+        binder: BinderId,
+        /// Without the agent itself.
+        other: bool,
+        /// `where`.
+        filter: Option<ExprId>,
+        /// `by`.
+        key: ExprId,
+    },
 }
 
 /// `let name = value`.
@@ -368,8 +374,10 @@ pub struct Mode {
     pub depth: usize,
     /// Its submodes in order; empty for a leaf.
     pub children: Vec<ModeId>,
-    /// The child entered by default; none for a leaf.
+    /// The child entered by default; none for a leaf, and where the children are regions.
     pub initial: Option<ModeId>,
+    /// Whether it is a region: active as long as the agent is, beside the other regions.
+    pub is_region: bool,
     /// State number, its rate, where the equation stands; without those of enclosing modes.
     pub flow: Vec<(usize, ExprId, Span)>,
     /// Domain of the flow.
@@ -421,18 +429,6 @@ pub struct Population {
     pub fixed: Vec<(TypeId, usize)>,
 }
 
-impl Population {
-    /// The path of an agent: `fast`, `cars[3]`.
-    pub fn agent_name(&self, agent: usize) -> String {
-        let after = self.blocks.partition_point(|block| block.first <= agent);
-        match self.blocks[..after].last() {
-            Some(block) if block.array => format!("{}[{}]", block.name, agent - block.first),
-            Some(block) => block.name.clone(),
-            None => format!("#{agent}"),
-        }
-    }
-}
-
 /// `name = Type[count](...)`.
 #[derive(Clone, Debug)]
 pub struct Block {
@@ -455,7 +451,7 @@ pub struct Block {
 pub struct Instance {
     /// Its type.
     pub ty: TypeId,
-    /// The leaf mode it starts in.
+    /// The mode it starts in: a leaf; of an agent with regions one of one region, or the root where the text names none.
     pub mode: ModeId,
     /// Values of the parameters, SI.
     pub params: Vec<f64>,
@@ -488,26 +484,13 @@ pub struct Run {
     pub span: Option<Span>,
 }
 
-impl Default for Run {
-    fn default() -> Self {
-        Self {
-            until: None,
-            tolerance: 1e-6,
-            absolute: None,
-            seed: 0,
-            integrator: Integrator::Auto,
-            records: Vec::new(),
-            events: None,
-            span: None,
-        }
-    }
-}
-
 /// `record ... every d to "file"`.
 #[derive(Clone, Debug)]
 pub struct Record {
-    /// The numbers of the agents, rising.
+    /// The numbers of the agents that are there at t = 0, rising.
     pub agents: Vec<usize>,
+    /// For each agent type (by number), whether agents that are created later are recorded, too.
+    pub born: Vec<bool>,
     /// The names of the columns in declared order.
     pub columns: Vec<String>,
     /// For each agent type (by number), for each column, the variable; none: an empty cell.

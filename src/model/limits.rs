@@ -13,6 +13,10 @@ pub struct Limits {
     pub states_max: usize,
     /// `max_modes`: modes of one agent type.
     pub modes_max: usize,
+    /// `max_configurations`: combinations of modes of the regions of one agent type.
+    pub configurations_max: usize,
+    /// `max_table_rows`: rows of a file that a `table` reads.
+    pub table_rows_max: usize,
     /// `max_cells`: cells of one sample, agents by columns of a `record`.
     pub cells_max: usize,
     /// `max_evaluations`: operations that all constants together may take.
@@ -28,6 +32,8 @@ impl Default for Limits {
             values_max: 200_000_000,
             states_max: 100_000,
             modes_max: 100_000,
+            configurations_max: 1_000,
+            table_rows_max: 1_000,
             cells_max: 10_000_000,
             evaluations_max: 50_000_000,
             operations_max: 200_000_000,

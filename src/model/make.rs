@@ -1,11 +1,9 @@
 //! Makes the agents that have been planned.
 
 use super::context::Context;
-use super::draw::Given;
 use super::error::{LimitError, SystemError, ValueError};
 use super::evaluate::Known;
-use super::initial::Initials;
-use super::ir::{Block, ExprId, Instance, Type, VarRef, Variable};
+use super::ir::{Block, ExprId, Given, Instance, Type, VarRef, Variable};
 use super::limits;
 use super::plan::{Plan, Reference, Source};
 use crate::base::Diagnostic;
@@ -13,15 +11,15 @@ use crate::math::draw::Key;
 
 impl<'a> Context<'a> {
     /// Makes all agents; stops a block at its first problem.
-    pub fn make(&mut self, plans: &[Plan<'a>], initials: &[Initials]) {
+    pub fn make(&mut self, plans: &[Plan<'a>]) {
         let blocks = std::mem::take(&mut self.model.population.blocks);
         let total = blocks.iter().map(|block| block.count).sum();
         let mut agents = Vec::with_capacity(total);
         self.evaluator.grant(limits::STEPS_PER_AGENT_MAX.saturating_mul(total as u64));
         for (block, plan) in blocks.iter().zip(plans) {
-            let order = &initials[plan.ty.index()].order;
+            let order = self.model.types[plan.ty].initials.order.clone();
             for index in 0..block.count {
-                match self.instance(plan, order, &blocks, block, index) {
+                match self.instance(plan, &order, &blocks, block, index) {
                     Ok(agent) => agents.push(agent),
                     Err(problem) => {
                         self.report(*problem);

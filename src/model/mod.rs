@@ -8,13 +8,18 @@
 mod integrator;
 pub mod limits;
 mod applied;
+mod kinds;
+mod collective;
 pub mod ir;
+mod access;
+mod configuration;
 mod suggest;
 mod dimension;
 mod measure;
 mod units;
 mod types;
 mod error;
+mod quantities;
 mod operands;
 mod order;
 mod mentions;
@@ -29,7 +34,9 @@ mod call;
 mod quantifier;
 mod overrides;
 mod draw;
+mod links;
 mod define;
+mod create;
 mod events;
 mod actions;
 mod transition;
@@ -37,6 +44,8 @@ mod behaviour;
 mod presence;
 mod initial;
 mod table;
+mod lookup;
+mod imports;
 mod plan;
 mod reference;
 mod population;
@@ -47,13 +56,16 @@ mod consistency;
 mod origin;
 mod formula;
 mod dump;
+mod diagram;
 mod lint;
 
+pub use diagram::{Arrow, Diagram, ModeBox, diagrams};
 pub use dump::dump;
 pub use ir::Model;
 
-use crate::base::{Diagnostic, SourceMap};
+use crate::base::{Diagnostic, FileId, SourceMap};
 use crate::syntax::Ast;
+use crate::syntax::ast::Item;
 
 /// What the command line lays over the model.
 #[derive(Clone, Debug, Default)]
@@ -79,7 +91,7 @@ pub struct Settings {
 
 /// Reads the files that a model names. Only the command line touches the disk.
 pub trait Files {
-    /// The bytes of the file at this path, as written in the model, relative to the model file.
+    /// The bytes of the file at this path, relative to the model file: a data file, or an imported one.
     fn read(&mut self, path: &str) -> std::io::Result<Vec<u8>>;
 }
 
@@ -94,19 +106,43 @@ pub struct Checked {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// The model that a text describes, with the settings of this run. Data files that it names are added to `sources`.
+/// The model that a text and the files that it imports describe, with the settings of this run. Files that are named are added to
+/// `sources`.
 pub fn check(ast: &Ast, sources: &mut SourceMap, files: &mut dyn Files, settings: &Settings) -> Checked {
-    let mut context = context::Context::new(sources, settings);
-    declare::declare(&mut context, ast);
+    let imports::Imports { trees, diagnostics } = imports::gather(ast, sources, files);
+    let items: Vec<&Item> = trees.iter().chain([ast]).flat_map(|tree| &tree.items).collect();
+    let mut context = context::Context::new(sources, files, settings);
+    context.imports = !diagnostics.is_empty();
+    context.diagnostics = diagnostics;
+    context.model.files = trees.iter().chain([ast]).filter_map(file_of).collect();
+    declare::declare(&mut context, &items);
     define::define(&mut context);
+    links::fill_links(&mut context);
     behaviour::fill_agents(&mut context);
     transition::fill_interactions(&mut context);
+    links::check_circles(&mut context);
     presence::check_presence(&mut context);
-    let initials = initial::initial_values(&mut context);
-    run::settle(&mut context, ast, settings);
-    population::populate(&mut context, ast, files, &initials);
-    run::trajectories(&mut context, ast, settings);
+    initial::initial_values(&mut context);
+    run::settle(&mut context, &items, settings);
+    population::populate(&mut context, &items);
+    run::trajectories(&mut context, &items, settings);
     consistency::check_dimensions(&mut context);
     let warnings = lint::lint(&mut context);
     context.finish(warnings)
+}
+
+/// The file of a tree; none if nothing is in it.
+fn file_of(tree: &Ast) -> Option<FileId> {
+    let span = match tree.items.first()? {
+        Item::Import(item) => item.span,
+        Item::Param(item) => item.span,
+        Item::Let(item) => item.span,
+        Item::Fn(item) => item.span,
+        Item::Agent(item) => item.span,
+        Item::Interaction(item) => item.span,
+        Item::System(item) => item.span,
+        Item::Property(item) => item.span,
+        Item::Run(item) => item.span,
+    };
+    Some(span.file)
 }

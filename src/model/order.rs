@@ -2,17 +2,17 @@
 
 /// All nodes, each after those that it needs (`needs[k]`), otherwise in their own order; an edge that would close a
 /// circle is ignored.
-pub(super) fn in_order_of_need(needs: &[Vec<usize>]) -> Vec<usize> {
+pub(super) fn in_order_of_need(needs: &[impl AsRef<[usize]>]) -> Vec<usize> {
     walk(needs).0
 }
 
 /// A circle of nodes each of which needs the next, the last one the first; the one that is met first.
-pub(super) fn find_circle(needs: &[Vec<usize>]) -> Option<Vec<usize>> {
+pub(super) fn find_circle(needs: &[impl AsRef<[usize]>]) -> Option<Vec<usize>> {
     walk(needs).1
 }
 
 /// Depth-first: the order in which nodes are finished, and the first circle.
-fn walk(needs: &[Vec<usize>]) -> (Vec<usize>, Option<Vec<usize>>) {
+fn walk(needs: &[impl AsRef<[usize]>]) -> (Vec<usize>, Option<Vec<usize>>) {
     #[derive(Clone, Copy, PartialEq)]
     enum Mark {
         New,
@@ -29,7 +29,7 @@ fn walk(needs: &[Vec<usize>]) -> (Vec<usize>, Option<Vec<usize>>) {
             path.push((root, 0));
         }
         while let Some((node, next)) = path.last_mut() {
-            let Some(&needed) = needs[*node].get(*next) else {
+            let Some(&needed) = needs[*node].as_ref().get(*next) else {
                 marks[*node] = Mark::Done;
                 order.push(*node);
                 path.pop();

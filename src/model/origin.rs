@@ -163,8 +163,8 @@ impl Pass<'_, '_> {
         let label = |span: Span, text: String| Some(Label { span, text });
         match &expr.kind {
             ExprKind::Time => label(expr.span, "`time` is in s".to_string()),
-            ExprKind::Local(number) => match (self.context.quantities.get(&id), frame) {
-                (Some(&Quantity::Declared { place, .. }), _) => {
+            ExprKind::Local(number) => match (self.context.quantities.get(id), frame) {
+                (Some(Quantity::Declared { place, .. }), _) => {
                     label(place, format!("`{name}` is declared in {}", self.unit_text(place)))
                 }
                 (_, Some(frame)) => {
@@ -173,13 +173,13 @@ impl Pass<'_, '_> {
                 }
                 (_, None) => None,
             },
-            ExprKind::Number(_) => match self.context.quantities.get(&id)? {
+            ExprKind::Number(_) => match self.context.quantities.get(id)? {
                 Quantity::Declared { place, .. }
                     if expr.span.start <= place.start && place.end <= expr.span.end =>
                 {
-                    label(*place, in_unit(dimension))
+                    label(place, in_unit(dimension))
                 }
-                &quantity => self.declared(name, quantity, dimension),
+                quantity => self.declared(name, quantity, dimension),
             },
             ExprKind::Rate(..) => {
                 let name = name.trim_end_matches('\'').trim_end();

@@ -1,7 +1,6 @@
 //! What is known of the agents of a block before they are made.
 
-use super::draw::Given;
-use super::ir::{ExprId, ModeId, TypeId, VarRef};
+use super::ir::{ExprId, Given, ModeId, TypeId, VarRef};
 use crate::base::Span;
 use crate::syntax::ast;
 

@@ -3,17 +3,12 @@
 //! Every block is planned first: where each of its values comes from, how many agents it has. Only then is anything
 //! made, so that a block may refer to one behind it, and a count beyond the limit costs no memory.
 
-use std::io::ErrorKind;
-
 use rustc_hash::FxHashMap;
 
-use super::Files;
 use super::context::{Context, Home, Member, Scope};
 use super::dimension::Dimension;
-use super::draw::Given;
 use super::error::{FileError, LimitError, SystemError, TypeError, ValueError};
-use super::initial::Initials;
-use super::ir::{Block, ModeId, TypeId};
+use super::ir::{Block, Given, ModeId, TypeId};
 use super::plan::{Plan, Source};
 use super::suggest::closest;
 use super::table::{self, Header, Wanted};
@@ -29,20 +24,14 @@ struct Data {
 }
 
 /// Makes the population.
-pub(super) fn populate<'a>(
-    context: &mut Context<'a>,
-    file: &'a ast::Ast,
-    files: &mut dyn Files,
-    initials: &[Initials],
-) {
-    let mut opened = FxHashMap::default();
-    let instances = file.items.iter().filter_map(|item| match item {
+pub(super) fn populate<'a>(context: &mut Context<'a>, items: &[&'a Item]) {
+    let instances = items.iter().filter_map(|item| match item {
         Item::System(system) => Some(&system.instances),
         _ => None,
     });
     let mut plans = Vec::new();
     for item in instances.flatten() {
-        plans.extend(context.plan(item, files, initials, &mut opened));
+        plans.extend(context.plan(item));
     }
     for plan in &mut plans {
         context.plan_links(plan);
@@ -53,18 +42,26 @@ pub(super) fn populate<'a>(
     context.model.population.fixed = context.fixed(&plans);
     context.check_values();
     if !context.has_errors() {
-        context.make(&plans, initials);
+        context.make(&plans);
     }
 }
 
 impl<'a> Context<'a> {
     /// The discrete variables that all plans of their type leave at a declared constant.
     fn fixed(&self, plans: &[Plan]) -> Vec<(TypeId, usize)> {
-        let is_fixed = |source: &Source| matches!(source, Source::Declared(Given::Value(id)) if self.facts[id.index()].closed);
+        let is_closed = |given: &Given| matches!(given, Given::Value(id) if self.facts[id.index()].closed);
+        let is_fixed = |source: &Source| matches!(source, Source::Declared(given) if is_closed(given));
         let mut by_type: FxHashMap<TypeId, Vec<bool>> = FxHashMap::default();
         for plan in plans {
             let all = by_type.entry(plan.ty).or_insert_with(|| vec![true; plan.discretes.len()]);
             all.iter_mut().zip(&plan.discretes).for_each(|(all, source)| *all &= is_fixed(source));
+        }
+        for create in self.model.creations() {
+            let all = by_type.entry(create.ty).or_insert_with(|| vec![true; create.discretes.len()]);
+            let declared = &self.model.types[create.ty].initials.discretes;
+            for ((all, given), declared) in all.iter_mut().zip(&create.discretes).zip(declared) {
+                *all &= given.is_none() && declared.as_ref().is_some_and(is_closed);
+            }
         }
         let of_type = |ty: TypeId| {
             let all = by_type.get(&ty).into_iter().flatten().enumerate();
@@ -87,13 +84,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    fn plan(
-        &mut self,
-        item: &'a ast::Instance,
-        files: &mut dyn Files,
-        initials: &[Initials],
-        opened: &mut FxHashMap<String, FileId>,
-    ) -> Option<Plan<'a>> {
+    fn plan(&mut self, item: &'a ast::Instance) -> Option<Plan<'a>> {
         let constructor = &item.constructor;
         let ty = self.agent_named(&constructor.agent)?;
         let mode = self.start_mode(ty, constructor.start.as_ref());
@@ -111,13 +102,13 @@ impl<'a> Context<'a> {
             misspelt: Vec::new(),
         };
         let given = self.plan_arguments(&mut plan);
-        let data = constructor.source.as_ref().map(|source| self.open(source, files, opened));
+        let data = constructor.source.as_ref().map(|source| self.open(source));
         let mut wanted = Vec::new();
         if let Some(Some(data)) = &data {
             wanted = self.plan_columns(&mut plan, data, &given);
         }
         if !matches!(data, Some(None)) {
-            self.plan_declared(&mut plan, &initials[ty.index()], &given);
+            self.plan_declared(&mut plan, &given);
         }
         let count = self.count(item, &data);
         let count = match (&data, count) {
@@ -143,7 +134,7 @@ impl<'a> Context<'a> {
     }
 
     /// The leaf that is entered by default in the mode that is named, or in the agent.
-    fn start_mode(&mut self, ty: TypeId, start: Option<&'a ast::Target>) -> ModeId {
+    pub fn start_mode(&mut self, ty: TypeId, start: Option<&'a ast::Target>) -> ModeId {
         let root = ModeId::new(0);
         let mut mode = start.and_then(|target| self.resolve_mode(ty, root, target)).unwrap_or(root);
         while let Some(inner) = self.model.types[ty].modes[mode].initial {
@@ -172,7 +163,11 @@ impl<'a> Context<'a> {
                 Some(Member::Param(number)) => (names.params[number], &mut plan.params[number]),
                 Some(Member::State(number)) => (names.states[number], &mut plan.states[number]),
                 Some(Member::Discrete(number)) => (names.discretes[number], &mut plan.discretes[number]),
-                Some(Member::Link(_) | Member::Twice) => continue,
+                Some(Member::Link(number)) => {
+                    self.check_link_argument(plan.ty, number, &arg.name);
+                    continue;
+                }
+                Some(Member::Twice) => continue,
                 Some(Member::Let(_) | Member::Event(_)) | None => {
                     let is_let = matches!(member, Some(Member::Let(_)));
                     plan.misspelt.extend(self.unknown_argument(plan.ty, &arg.name, is_let));
@@ -207,7 +202,7 @@ impl<'a> Context<'a> {
         None
     }
 
-    fn unknown_argument(&mut self, ty: TypeId, name: &ast::Name, is_let: bool) -> Option<String> {
+    pub fn unknown_argument(&mut self, ty: TypeId, name: &ast::Name, is_let: bool) -> Option<String> {
         let similar = closest(&name.text, self.agents[ty.index()].members.keys().copied());
         let agent = self.model.types[ty].name.clone();
         let (name, span) = (name.text.clone(), name.span);
@@ -216,12 +211,7 @@ impl<'a> Context<'a> {
     }
 
     /// The file behind `from csv(...)`; none, and a diagnostic, if it cannot be used.
-    fn open(
-        &mut self,
-        source: &'a ast::Expr,
-        files: &mut dyn Files,
-        opened: &mut FxHashMap<String, FileId>,
-    ) -> Option<Data> {
+    fn open(&mut self, source: &'a ast::Expr) -> Option<Data> {
         let path = match &source.kind {
             ast::ExprKind::Call { callee, args } => match (&callee.kind, args.as_slice()) {
                 (ast::ExprKind::Name(name), [path]) if name == "csv" => Some(path),
@@ -236,35 +226,7 @@ impl<'a> Context<'a> {
             self.report(TypeError::Mismatch { what, expected, found, span: source.span, help: None });
             return None;
         };
-        let Some(name) = self.text_of(path) else {
-            let errors = self.diagnostics.len();
-            let value = self.lower(&mut Scope::of(Home::File), path);
-            if self.diagnostics.len() == errors && value.ty != Ty::Text {
-                let found = self.describe(value.ty);
-                let (what, expected) = ("the name of a file".to_string(), "a text".to_string());
-                self.report(TypeError::Mismatch { what, expected, found, span: path.span, help: None });
-            }
-            return None;
-        };
-        let file = match opened.get(&name) {
-            Some(&file) => file,
-            None => match files.read(&name) {
-                Ok(bytes) => match table::add_text(self.sources, &name, bytes) {
-                    Ok(file) => {
-                        opened.insert(name, file);
-                        file
-                    }
-                    Err(error) => {
-                        self.report(error);
-                        return None;
-                    }
-                },
-                Err(error) => {
-                    self.report(FileError::Unreadable { path: name, why: reason(&error), span: path.span });
-                    return None;
-                }
-            },
-        };
+        let file = self.open_file(path)?;
         match table::read_header(file, &self.sources.file(file).text) {
             Ok(header) => Some(Data { file, header, used: source.span }),
             Err(error) => {
@@ -316,8 +278,9 @@ impl<'a> Context<'a> {
     }
 
     /// What neither an argument nor a column gives comes from the agent type, or is missing.
-    fn plan_declared(&mut self, plan: &mut Plan<'a>, initials: &Initials, given: &FxHashMap<&'a str, Span>) {
+    fn plan_declared(&mut self, plan: &mut Plan<'a>, given: &FxHashMap<&'a str, Span>) {
         let model = &self.model.types[plan.ty];
+        let initials = &model.initials;
         let parts = [
             ("parameter", &model.params, &mut plan.params, &initials.params),
             ("state", &model.states, &mut plan.states, &initials.states),
@@ -355,7 +318,7 @@ impl<'a> Context<'a> {
     }
 
     /// Whether a variable has a value in the text, though it was refused.
-    fn declared_with_value(&self, ty: TypeId, name: &str) -> bool {
+    pub fn declared_with_value(&self, ty: TypeId, name: &str) -> bool {
         let item = self.agents[ty.index()].item;
         let formal = item.formals.iter().any(|formal| formal.name.text == name && formal.default.is_some());
         formal
@@ -428,13 +391,5 @@ impl<'a> Context<'a> {
                 count
             }
         }
-    }
-}
-
-/// Why a file cannot be read, in the same words everywhere.
-fn reason(error: &std::io::Error) -> String {
-    match error.kind() {
-        ErrorKind::NotFound => "there is no such file".to_string(),
-        _ => error.to_string(),
     }
 }

@@ -18,10 +18,13 @@ enum Asks {
 }
 
 /// What a quantifier ranges over.
-struct Range {
-    binder: BinderId,
-    set: TypeId,
-    other: bool,
+pub(super) struct Range {
+    /// The name it binds.
+    pub binder: BinderId,
+    /// The set.
+    pub set: TypeId,
+    /// Without the agent that asks.
+    pub other: bool,
 }
 
 impl<'a> Context<'a> {
@@ -39,10 +42,7 @@ impl<'a> Context<'a> {
             QuantifierKind::Sum => Asks::Number(Aggregate::Sum),
             QuantifierKind::Min => Asks::Number(Aggregate::Min),
             QuantifierKind::Max => Asks::Number(Aggregate::Max),
-            QuantifierKind::Nearest => {
-                self.refuse("`nearest` quantifiers", span);
-                return self.wrong(span);
-            }
+            QuantifierKind::Nearest => return self.lower_nearest(scope, item, span),
         };
         let Some(range) = self.range(scope, item) else { return self.wrong(span) };
         scope.bound.push((&item.binder.text, range.binder));
@@ -59,7 +59,7 @@ impl<'a> Context<'a> {
     }
 
     /// What a quantifier ranges over; none, and a diagnostic, if that is no set.
-    fn range(&mut self, scope: &Scope<'a>, item: &'a ast::Quantifier) -> Option<Range> {
+    pub fn range(&mut self, scope: &Scope<'a>, item: &'a ast::Quantifier) -> Option<Range> {
         if let (Some(other), Home::File | Home::Function | Home::Initial(_) | Home::Construction) =
             (item.other, scope.home)
         {
@@ -159,7 +159,7 @@ impl<'a> Context<'a> {
         Value { ty: Ty::Wrong, ..value }
     }
 
-    fn no_body(&mut self, quantifier: &str, needs: &'static str, span: Span) -> Value {
+    pub fn no_body(&mut self, quantifier: &str, needs: &'static str, span: Span) -> Value {
         let (operator, found) = (quantifier.to_string(), "all of it".to_string());
         self.report(TypeError::Operand { operator, needs, found, span });
         self.wrong(span)

@@ -14,6 +14,8 @@ use crate::syntax::ast;
 
 /// What is recorded, item by item.
 pub(super) struct Choice {
+    /// For each type, whether all of its agents are wanted, those created later included.
+    types: Vec<bool>,
     /// For each block, whether all of it is wanted.
     blocks: Vec<bool>,
     /// Numbers of single agents, in any order.
@@ -32,6 +34,7 @@ impl<'a> Context<'a> {
         let variables = self.model.types.iter().map(|ty| vec![false; ty.declared.len()]).collect();
         let names = self.model.population.blocks.iter().enumerate().map(|(k, block)| (block.name.clone(), k));
         Choice {
+            types: vec![false; self.model.types.len()],
             blocks: vec![false; self.model.population.blocks.len()],
             agents: Vec::new(),
             variables,
@@ -134,6 +137,7 @@ impl<'a> Context<'a> {
     }
 
     fn choose_agents(&self, ty: TypeId, choice: &mut Choice) {
+        choice.types[ty.index()] = true;
         for (wanted, block) in choice.blocks.iter_mut().zip(&self.model.population.blocks) {
             *wanted |= block.ty == ty;
         }
@@ -160,7 +164,7 @@ impl<'a> Context<'a> {
         file: Option<String>,
         span: Span,
     ) -> Option<Record> {
-        let Choice { blocks, mut agents, variables: wanted, .. } = choice;
+        let Choice { types: born, blocks, mut agents, variables: wanted, .. } = choice;
         let mut columns: Vec<String> = Vec::new();
         let mut column_of: FxHashMap<&str, usize> = FxHashMap::default();
         for (ty, wanted) in self.model.types.iter().zip(&wanted) {
@@ -197,6 +201,6 @@ impl<'a> Context<'a> {
             variables
         };
         let variables = self.model.types.iter().zip(&wanted).map(of_type).collect();
-        Some(Record { agents, columns, variables, every, file, span })
+        Some(Record { agents, born, columns, variables, every, file, span })
     }
 }

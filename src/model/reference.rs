@@ -20,6 +20,19 @@ impl<'a> Context<'a> {
                 plan.links[number] = self.reference(&arg.given.value, target);
             }
         }
+        let own = self.agents[plan.ty.index()].item;
+        for part in &own.items {
+            let ast::AgentItem::Link(link) = part else { continue };
+            let links = &self.model.types[plan.ty].links;
+            let place = links.iter().position(|declared| declared.span == link.name.span);
+            if let (Some(value), Some(place)) = (&link.value, place)
+                && self.is_of_system(value)
+                && !plan.item.constructor.args.iter().any(|arg| arg.name.text == link.name.text)
+            {
+                let target = links[place].ty;
+                plan.links[place] = self.reference(value, target);
+            }
+        }
     }
 
     fn reference(&mut self, expr: &'a ast::Expr, target: TypeId) -> Option<Reference> {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::context::{Context, Global, GlobalKind, Home, Meaning, Member, Scope, Value};
+use super::context::{Context, Global, GlobalKind, Home, Meaning, Member, PairNames, Scope, Value};
 use super::error::{ModeError, NameError, TypeError};
 use super::ir::{Destination, ExprKind, Inside, ModeId, TypeId};
 use super::suggest::closest;
@@ -22,6 +22,9 @@ impl<'a> Context<'a> {
         if let Some(&(_, binder)) = scope.bound.iter().rev().find(|(bound, _)| *bound == name) {
             let ty = self.model.binders[binder].ty;
             return self.push(ExprKind::Bound(binder), Ty::Agent(ty), span);
+        }
+        if let Some(&(_, link)) = scope.nearest.iter().find(|(bound, _)| *bound == name) {
+            return link;
         }
         if let Some(number) = scope.locals.iter().position(|(local, _)| *local == name) {
             let slot = scope.locals[number].1;
@@ -156,21 +159,25 @@ impl<'a> Context<'a> {
 
     fn unknown_name(&mut self, scope: &Scope<'a>, name: &str, span: Span) -> Value {
         if !self.imports {
-            let mut known = CONSTANTS.to_vec();
-            known.extend(scope.bound.iter().map(|(bound, _)| *bound));
-            known.extend(scope.locals.iter().map(|(local, _)| *local));
-            known.extend(scope.received.iter().map(|(value, _)| *value));
-            known.extend(self.globals.keys());
-            if let Home::Agent(ty, mode) = scope.home {
-                known.extend(self.agents[ty.index()].mode_lets[mode.index()].keys());
-            }
-            if let Home::Agent(ty, _) | Home::Initial(ty) = scope.home {
-                known.extend(self.agents[ty.index()].members.keys());
-            }
-            if let Home::Pair(number) = scope.home {
-                known.extend(self.pairs[number].lets.keys());
-                known.extend(self.pairs[number].item.formals.iter().map(|formal| formal.name.text.as_str()));
-            }
+            let bound = scope.bound.iter().map(|(bound, _)| *bound);
+            let locals = scope.locals.iter().map(|(local, _)| *local);
+            let received = scope.received.iter().map(|(value, _)| *value);
+            let of_file = self.globals.keys().copied();
+            let own: Box<dyn Iterator<Item = &str>> = match scope.home {
+                Home::Agent(ty, mode) => {
+                    let names = &self.agents[ty.index()];
+                    Box::new(names.mode_lets[mode.index()].keys().chain(names.members.keys()).copied())
+                }
+                Home::Initial(ty) => Box::new(self.agents[ty.index()].members.keys().copied()),
+                Home::Pair(number) => {
+                    let PairNames { lets, item, .. } = &self.pairs[number];
+                    let participants = item.formals.iter().map(|formal| formal.name.text.as_str());
+                    Box::new(lets.keys().copied().chain(participants))
+                }
+                Home::File | Home::Function | Home::Construction => Box::new(std::iter::empty()),
+            };
+            let mut known: Vec<&str> = CONSTANTS.to_vec();
+            known.extend(bound.chain(locals).chain(received).chain(of_file).chain(own));
             let similar = closest(name, known);
             self.report(NameError::Unknown { what: "variable", name: name.to_string(), span, similar });
         }
@@ -334,6 +341,14 @@ impl<'a> Context<'a> {
         target: &ast::Target,
     ) -> Option<Destination> {
         let mode = self.resolve_mode(ty, from, target)?;
+        let model = &self.model.types[ty];
+        if let (Some(own), Some(other)) = (model.region_of(from), model.region_of(mode))
+            && own != other
+        {
+            let [from, to] = [own, other].map(|region| model.modes[region].name.clone());
+            self.report(ModeError::AcrossRegions { from, to, span: target.span });
+            return None;
+        }
         let Some(span) = target.history else { return Some(Destination { mode, inside: Inside::Initial }) };
         let item = &self.model.types[ty].modes[mode];
         if item.children.is_empty() {

@@ -69,8 +69,8 @@ const SEED: Number = Number {
 };
 
 /// Fills in the settings that are numbers or names.
-pub(super) fn settle<'a>(context: &mut Context<'a>, file: &'a ast::Ast, settings: &Settings) {
-    if let Some(run) = only_run(file) {
+pub(super) fn settle<'a>(context: &mut Context<'a>, items: &[&'a Item], settings: &Settings) {
+    if let Some(run) = only_run(items) {
         context.model.run.span = Some(run.span);
         let mut set = FxHashMap::default();
         for setting in &run.settings {
@@ -81,8 +81,8 @@ pub(super) fn settle<'a>(context: &mut Context<'a>, file: &'a ast::Ast, settings
 }
 
 /// Fills in the trajectories to write, once the agents are known.
-pub(super) fn trajectories<'a>(context: &mut Context<'a>, file: &'a ast::Ast, settings: &Settings) {
-    for setting in only_run(file).into_iter().flat_map(|run| &run.settings) {
+pub(super) fn trajectories<'a>(context: &mut Context<'a>, items: &[&'a Item], settings: &Settings) {
+    for setting in only_run(items).into_iter().flat_map(|run| &run.settings) {
         if let RunSettingKind::Record { columns, period, file } = &setting.kind {
             context.record(columns, period.as_ref(), file, setting.span);
         }
@@ -93,9 +93,9 @@ pub(super) fn trajectories<'a>(context: &mut Context<'a>, file: &'a ast::Ast, se
     }
 }
 
-/// The `run` of a file; a second one is refused.
-fn only_run(file: &ast::Ast) -> Option<&ast::Run> {
-    file.items.iter().find_map(|item| match item {
+/// The `run` of a model; a second one is refused.
+fn only_run<'a>(items: &[&'a Item]) -> Option<&'a ast::Run> {
+    items.iter().find_map(|item| match item {
         Item::Run(run) => Some(run),
         _ => None,
     })

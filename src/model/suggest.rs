@@ -8,7 +8,11 @@ const CANDIDATES_MAX: usize = 2_000;
 /// The closest of the candidates, if it is close enough to be what was meant; of two the one that begins alike,
 /// then the first in the alphabet.
 pub(super) fn closest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<String> {
-    let candidates: Vec<&str> = candidates.into_iter().take(CANDIDATES_MAX + 1).collect();
+    let candidates = candidates.into_iter();
+    if candidates.size_hint().0 > CANDIDATES_MAX {
+        return None;
+    }
+    let candidates: Vec<&str> = candidates.take(CANDIDATES_MAX + 1).collect();
     if candidates.len() > CANDIDATES_MAX {
         return None;
     }

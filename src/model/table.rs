@@ -34,6 +34,14 @@ pub(super) struct Rows {
     pub last: Span,
 }
 
+/// Why a file cannot be read, in the same words everywhere.
+pub(super) fn reason(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "there is no such file".to_string(),
+        _ => error.to_string(),
+    }
+}
+
 fn reader(text: &str) -> csv::Reader<&[u8]> {
     csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes())
 }
@@ -141,6 +149,18 @@ fn expected(ty: Ty) -> &'static str {
         Ty::Bool => "`true` or `false`",
         Ty::Real | Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::Wrong => "a number",
     }
+}
+
+/// The place of a cell, by its row (from 0, without the header) and column.
+pub(super) fn cell(file: FileId, text: &str, row: usize, column: usize) -> Span {
+    let mut reader = reader(text);
+    let mut record = csv::StringRecord::new();
+    for _ in 0..row + 2 {
+        if !matches!(reader.read_record(&mut record), Ok(true)) {
+            break;
+        }
+    }
+    cell_span(file, text, record_start(&record), column)
 }
 
 /// The value of a cell, SI; else what is in it, in words.

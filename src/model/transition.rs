@@ -241,6 +241,13 @@ impl<'a> Context<'a> {
         let mut witnesses: Vec<(&'a str, BinderId)> = Vec::new();
         for (term, value) in terms.iter().zip(&values) {
             let ast::ExprKind::Quantifier(item) = &term.kind else { continue };
+            if let (ast::QuantifierKind::Nearest, ExprKind::Present(link)) =
+                (item.kind, &self.model.exprs[value.id].kind)
+            {
+                let (link, ty) = (*link, self.model.exprs[*link].ty);
+                scope.nearest.push((&item.binder.text, Value { id: link, ty: Ty::from(ty) }));
+                continue;
+            }
             let ExprKind::Quantifier { kind: super::ir::Quantifier::Exists, binder, .. } =
                 self.model.exprs[value.id].kind
             else {

@@ -1,9 +1,12 @@
 //! The names that tables print: of agents, by number, and of the columns of their types.
 
+use super::columns::Kind;
+use crate::runtime::observe::Who;
+
 /// All names of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cast {
-    /// The path of every agent, by number: `fast`, `cars[3]`.
+    /// The path of every agent that is there at t = 0, by number: `fast`, `cars[3]`.
     pub agents: Vec<String>,
     /// The columns of every agent type, by number.
     pub types: Vec<TypeColumns>,
@@ -12,18 +15,25 @@ pub struct Cast {
 /// The variables of an agent type, each list in order of declaration.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TypeColumns {
+    /// Name of the type.
+    pub name: String,
     /// Names of the states.
     pub states: Vec<String>,
     /// Names of the discrete variables.
     pub discretes: Vec<String>,
+    /// What the discrete variables hold.
+    pub discrete_kinds: Vec<Kind>,
 }
 
 impl Cast {
-    /// The path of an agent; one that the list does not know is named by its number.
-    pub(super) fn agent(&self, number: usize) -> std::borrow::Cow<'_, str> {
-        match self.agents.get(number) {
+    /// The path of an agent; one that has been created is named by its type and number, `Car#17`.
+    pub fn agent(&self, who: Who) -> std::borrow::Cow<'_, str> {
+        match self.agents.get(who.number) {
             Some(path) => path.as_str().into(),
-            None => format!("#{number}").into(),
+            None => {
+                let name = self.types.get(who.ty).map_or("", |ty| ty.name.as_str());
+                format!("{name}#{}", who.number).into()
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::io;
 
 use super::cast::Cast;
+use super::columns::{Column, Kind};
 use super::table::{Sink, Table};
 use crate::runtime::observe::Event;
 
@@ -13,26 +14,38 @@ pub(super) struct EventLog {
 
 impl EventLog {
     pub(super) fn new(sink: Sink) -> io::Result<Self> {
-        let header = ["time", "micro", "transition", "agent", "other", "from", "to"];
-        Ok(Self { table: Table::new(sink, header)? })
+        let texts = ["transition", "agent", "other", "from", "to"].map(|name| Column::new(name, Kind::Text));
+        let columns = [Column::new("time", Kind::Number), Column::new("micro", Kind::Count)];
+        Ok(Self { table: Table::new(sink, &[&columns[..], &texts].concat())? })
     }
 
     pub(super) fn event(&mut self, cast: &Cast, event: &Event<'_>) -> io::Result<()> {
-        let (from, to) = event.modes.unwrap_or(("", ""));
-        self.table.number(event.time)?;
-        self.table.count(event.micro)?;
-        self.table.text(event.transition)?;
-        self.table.text(&cast.agent(event.agent))?;
+        self.table.number(event.time);
+        self.table.count(event.micro);
+        self.table.text(event.transition);
+        self.table.text(&cast.agent(event.agent));
         match event.other {
-            Some(other) => self.table.text(&cast.agent(other))?,
-            None => self.table.text("")?,
+            Some(other) => self.table.text(&cast.agent(other)),
+            None => self.table.empty(),
         }
-        self.table.text(from)?;
-        self.table.text(to)?;
+        match event.modes {
+            Some((from, to)) => {
+                self.table.text(from);
+                self.table.text(to);
+            }
+            None => {
+                self.table.empty();
+                self.table.empty();
+            }
+        }
         self.table.end_row()
     }
 
     pub(super) fn flush(&mut self) -> io::Result<()> {
         self.table.flush()
+    }
+
+    pub(super) fn finish(&mut self) -> io::Result<()> {
+        self.table.finish()
     }
 }

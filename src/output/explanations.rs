@@ -8,13 +8,13 @@ use std::io::{self, BufWriter, Write};
 use super::cast::Cast;
 use super::table::Sink;
 use crate::base::{SourceMap, Span, number_text};
-use crate::runtime::observe::{Cause, Compared, Explanation, Undecided, WhyUndecided};
+use crate::runtime::observe::{Cause, Compared, Explanation, Undecided, Who, WhyUndecided};
 
 /// The text of explanations, written as the run proceeds.
 pub(super) struct Explanations<'a> {
     sources: &'a SourceMap,
     name: String,
-    writer: BufWriter<Box<dyn Write>>,
+    writer: BufWriter<Box<dyn Write + Send>>,
 }
 
 impl<'a> Explanations<'a> {
@@ -103,7 +103,7 @@ impl<'a> Explanations<'a> {
 }
 
 /// `ball`, `cars[3] and cars[5]`
-fn participants(cast: &Cast, agent: usize, other: Option<usize>) -> String {
+fn participants(cast: &Cast, agent: Who, other: Option<Who>) -> String {
     let other = other.map(|other| format!(" and {}", cast.agent(other)));
     format!("{}{}", cast.agent(agent), other.unwrap_or_default())
 }

@@ -3,6 +3,7 @@
 use std::io;
 
 use super::cast::{Cast, TypeColumns};
+use super::columns::{Column, Kind};
 use super::table::{Sink, Table};
 use super::trajectory::write_cell;
 use crate::runtime::observe::{Cell, Last};
@@ -25,39 +26,46 @@ enum Place {
 impl FinalStates {
     pub(super) fn new(sink: Sink, cast: &Cast) -> io::Result<Self> {
         let columns = columns_of(cast);
-        let header = ["time", "agent", "mode"].into_iter().chain(columns.iter().copied());
-        let table = Table::new(sink, header)?;
+        let fixed = [("time", Kind::Number), ("agent", Kind::Text), ("mode", Kind::Text)];
+        let fixed = fixed.map(|(name, kind)| Column::new(name, kind));
+        let table = Table::new(sink, &[&fixed[..], &columns].concat())?;
         let places =
-            cast.types.iter().map(|ty| columns.iter().map(|column| place_of(ty, column)).collect()).collect();
+            cast.types.iter().map(|ty| columns.iter().map(|column| place_of(ty, &column.name)).collect());
+        let places = places.collect();
         Ok(Self { table, places })
     }
 
     pub(super) fn last(&mut self, cast: &Cast, last: &Last<'_>) -> io::Result<()> {
-        self.table.number(last.time)?;
-        self.table.text(&cast.agent(last.agent))?;
-        self.table.text(last.mode)?;
+        self.table.number(last.time);
+        self.table.text(&cast.agent(last.agent));
+        self.table.text(last.mode);
         for &place in &self.places[last.ty] {
             let cell = match place {
                 Place::State(k) => Cell::Number(last.states[k]),
                 Place::Discrete(k) => last.discretes[k],
                 Place::Nowhere => Cell::Empty,
             };
-            write_cell(&mut self.table, cast, cell)?;
+            write_cell(&mut self.table, cast, cell);
         }
         self.table.end_row()
     }
 
-    pub(super) fn flush(&mut self) -> io::Result<()> {
-        self.table.flush()
+    pub(super) fn finish(&mut self) -> io::Result<()> {
+        self.table.finish()
     }
 }
 
 /// Every name once: type by type, states before discrete variables.
-fn columns_of(cast: &Cast) -> Vec<&str> {
-    let mut columns: Vec<&str> = Vec::new();
-    for name in cast.types.iter().flat_map(|ty| ty.states.iter().chain(&ty.discretes)) {
-        if !columns.contains(&name.as_str()) {
-            columns.push(name);
+fn columns_of(cast: &Cast) -> Vec<Column> {
+    let mut columns: Vec<Column> = Vec::new();
+    for ty in &cast.types {
+        let states = ty.states.iter().map(|name| (name, Kind::Number));
+        let discretes = ty.discretes.iter().zip(ty.discrete_kinds.iter().copied());
+        for (name, kind) in states.chain(discretes) {
+            match columns.iter_mut().find(|column| column.name == *name) {
+                Some(column) => column.kind = column.kind.with(kind),
+                None => columns.push(Column::new(name, kind)),
+            }
         }
     }
     columns

@@ -6,6 +6,9 @@
 //! the same run gives the same bytes. It opens no file: it is handed places to write to.
 
 mod diagnostic_json;
+mod columns;
+mod comma_separated;
+mod columnar;
 mod table;
 mod cast;
 mod event_log;
@@ -21,6 +24,7 @@ mod summary;
 mod tests;
 
 pub use cast::{Cast, TypeColumns};
+pub use columns::{Column, Kind};
 pub use diagnostic_json::diagnostic_json;
 pub use report::Report;
 pub use statistics::statistics;

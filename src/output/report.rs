@@ -38,6 +38,12 @@ pub struct Report<'a> {
     pub instructions: usize,
     /// Bytes of machine code.
     pub code_bytes: usize,
+    /// Who had most events, and how many.
+    pub busiest: &'a [(String, u64)],
+    /// The parts of compiling, s.
+    pub compile_parts: &'a [(&'a str, f64)],
+    /// The part of the run that writing took, s.
+    pub writing_seconds: f64,
     /// From text to program, s.
     pub compile_seconds: f64,
     /// From program to end, s.

@@ -1,4 +1,5 @@
-//! The statistics of a run as JSON. Keys are stable; only `compile_seconds` and `run_seconds` differ from run to run.
+//! The statistics of a run as JSON. Keys are stable; only times of the computer (`_seconds`, `compile_parts`) differ from run
+//! to run.
 
 use serde_json::{Map, Value, json};
 
@@ -10,7 +11,7 @@ use crate::runtime::observe::{End, FalseAssert};
 pub fn statistics(report: &Report<'_>) -> String {
     let outcome = report.outcome;
     let stats = &outcome.stats;
-    let value = json!({
+    let mut value = json!({
         "model": report.model,
         "algorithm": report.algorithm,
         "engine": report.engine,
@@ -32,6 +33,8 @@ pub fn statistics(report: &Report<'_>) -> String {
         "jacobians": stats.jacobians,
         "guard_evaluations": stats.guard_evaluations,
         "guard_ranges": stats.guard_ranges,
+        "places": stats.places,
+        "guard_places": stats.guard_places,
         "pairs_listed": stats.pairs_listed,
         "undecided_roots": stats.undecided_roots,
         "cuts": stats.cuts,
@@ -51,6 +54,9 @@ pub fn statistics(report: &Report<'_>) -> String {
         "run_seconds": report.run_seconds,
         "version": env!("CARGO_PKG_VERSION"),
     });
+    value["busiest_agents"] = counts(report.busiest);
+    value["compile_parts"] = parts(report.compile_parts);
+    value["writing_seconds"] = json!(report.writing_seconds);
     let mut text = serde_json::to_string_pretty(&value).expect("every key is a string");
     text.push('\n');
     text
@@ -84,10 +90,22 @@ fn false_assert(claim: &FalseAssert, report: &Report<'_>) -> Value {
 
 fn types(report: &Report<'_>) -> Value {
     let of_type = report.outcome.stats.types.iter().map(|ty| {
-        let counts = json!({ "agents": ty.agents, "steps": ty.steps, "events": ty.events });
+        let counts = json!({
+            "agents": ty.agents,
+            "created": ty.created,
+            "destroyed": ty.destroyed,
+            "steps": ty.steps,
+            "events": ty.events,
+        });
         (ty.name.clone(), counts)
     });
     Value::Object(of_type.collect::<Map<_, _>>())
+}
+
+fn parts(named: &[(&str, f64)]) -> Value {
+    Value::Object(
+        named.iter().map(|(name, seconds)| (name.replace(' ', "_"), json!(seconds))).collect::<Map<_, _>>(),
+    )
 }
 
 fn counts(named: &[(String, u64)]) -> Value {

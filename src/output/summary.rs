@@ -8,44 +8,44 @@ use crate::runtime::observe::End;
 
 /// How many transitions are listed, those that fired most often first.
 const TRANSITIONS_SHOWN: usize = 8;
+/// How many agents are listed, those with most events first.
+const AGENTS_SHOWN: usize = 3;
+/// The longest bar, in characters.
+const BAR: u64 = 24;
 
 /// The summary, a few lines with line ends.
 pub fn summary(report: &Report<'_>) -> String {
     let stats = &report.outcome.stats;
     let mut text = String::new();
     line(&mut text, format_args!("{}: {}", report.model, ending(report)));
-    line(
-        &mut text,
-        format_args!(
-            "  {}, {}, {} ({} rejected), {}",
-            counted(report.cast.agents.len() as u64, "agent"),
-            counted(stats.events, "event"),
-            counted(stats.steps, "step"),
-            stats.rejected,
-            counted(stats.rhs_evaluations, "right-hand side"),
-        ),
-    );
+    let agents = counted(report.cast.agents.len() as u64, "agent");
+    let (events, steps) = (counted(stats.events, "event"), counted(stats.steps, "step"));
+    let (turnover, rejected) = (turnover(report), grouped(stats.rejected));
+    line(&mut text, format_args!("  {agents}{turnover}, {events}, {steps} ({rejected} rejected)"));
     if let [_, (_, 1..)] = stats.methods[..] {
-        let by = stats.methods.iter().map(|(name, steps)| format!("{steps} by {name}"));
-        line(&mut text, format_args!("  steps: {}", by.collect::<Vec<_>>().join(", ")));
+        let by = stats.methods.iter().map(|(name, steps)| format!("{} by {name}", grouped(*steps)));
+        line(&mut text, format_args!("  steps      {}", by.collect::<Vec<_>>().join(", ")));
     }
     fired(&mut text, report);
-    if stats.undecided_roots > 0 {
-        let roots = counted(stats.undecided_roots, "root");
-        line(&mut text, format_args!("  {roots} of guards could be neither excluded nor isolated"));
-    }
-    line(
-        &mut text,
-        format_args!(
-            "  compiled in {}, ran in {}",
-            duration(report.compile_seconds),
-            duration(report.run_seconds)
-        ),
-    );
+    busiest(&mut text, report);
+    guards(&mut text, report);
+    claims(&mut text, report);
+    time(&mut text, report);
     if !report.files.is_empty() {
-        line(&mut text, format_args!("  wrote {}", report.files.join(", ")));
+        line(&mut text, format_args!("  wrote      {}", report.files.join(", ")));
     }
     text
+}
+
+/// How many agents have come and gone, if any.
+fn turnover(report: &Report<'_>) -> String {
+    let types = &report.outcome.stats.types;
+    let (created, destroyed): (u64, u64) =
+        types.iter().fold((0, 0), |sum, ty| (sum.0 + ty.created, sum.1 + ty.destroyed));
+    match (created, destroyed) {
+        (0, 0) => String::new(),
+        _ => format!(" ({created} created, {destroyed} destroyed)"),
+    }
 }
 
 /// `ended at t = 30 s`, and why.
@@ -64,15 +64,18 @@ fn ending(report: &Report<'_>) -> String {
     }
 }
 
-/// The transitions that fired most often; among equals, in order of declaration.
+/// The transitions that fired most often, with bars; among equals, in order of declaration.
 fn fired(text: &mut String, report: &Report<'_>) {
     let mut transitions: Vec<_> =
         report.outcome.stats.transitions.iter().filter(|(_, count)| *count > 0).collect();
     transitions.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     let shown = &transitions[..transitions.len().min(TRANSITIONS_SHOWN)];
     let width = shown.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
+    let digits = shown.iter().map(|(_, count)| grouped(*count).len()).max().unwrap_or(0);
+    let most = shown.first().map_or(1, |(_, count)| *count);
     for (label, count) in shown {
-        line(text, format_args!("    {label:width$}  {count}"));
+        let bar = "#".repeat((BAR * count).div_ceil(most).clamp(1, BAR) as usize);
+        line(text, format_args!("    {label:width$}  {:>digits$}  {bar}", grouped(*count)));
     }
     let more = transitions.len() - shown.len();
     if more > 0 {
@@ -80,9 +83,69 @@ fn fired(text: &mut String, report: &Report<'_>) {
     }
 }
 
+/// Who has most events, where there are several agents.
+fn busiest(text: &mut String, report: &Report<'_>) {
+    if report.busiest.is_empty() || report.cast.agents.len() < 2 {
+        return;
+    }
+    let shown = report.busiest.iter().take(AGENTS_SHOWN);
+    let shown = shown.map(|(name, count)| format!("{name} ({})", counted(*count, "event")));
+    line(text, format_args!("  busiest    {}", shown.collect::<Vec<_>>().join(", ")));
+}
+
+fn guards(text: &mut String, report: &Report<'_>) {
+    let stats = &report.outcome.stats;
+    let (points, ranges) = (grouped(stats.guard_evaluations), grouped(stats.guard_ranges));
+    let roots = match stats.undecided_roots {
+        0 => String::new(),
+        n => format!("; {} could be neither excluded nor isolated: --explain-events", counted(n, "root")),
+    };
+    line(
+        text,
+        format_args!("  guards     evaluated {points} times at a point, {ranges} over an interval{roots}"),
+    );
+}
+
+fn claims(text: &mut String, report: &Report<'_>) {
+    let n = report.outcome.false_asserts.len() as u64;
+    if n > 0 {
+        let times: u64 = report.outcome.false_asserts.iter().map(|claim| claim.count).sum();
+        line(text, format_args!("  asserts    {} false, {}", grouped(n), counted(times, "time")));
+    }
+}
+
+/// Where the time went.
+fn time(text: &mut String, report: &Report<'_>) {
+    let parts = report.compile_parts.iter().map(|(name, seconds)| format!("{name} {}", duration(*seconds)));
+    let parts = parts.collect::<Vec<_>>().join(", ");
+    let parts = if parts.is_empty() { parts } else { format!(" ({parts})") };
+    let writing = match report.writing_seconds {
+        seconds if seconds >= 0.01 * report.run_seconds => format!(" ({} of it writing)", duration(seconds)),
+        _ => String::new(),
+    };
+    let (compiled, ran) = (duration(report.compile_seconds), duration(report.run_seconds));
+    line(text, format_args!("  time       compiled in {compiled}{parts}, ran in {ran}{writing}"));
+}
+
 fn counted(count: u64, noun: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
-    format!("{count} {noun}{plural}")
+    format!("{} {noun}{plural}", grouped(count))
+}
+
+/// With a space between each three digits, from five digits on.
+fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    if digits.len() < 5 {
+        return digits;
+    }
+    let mut text = String::new();
+    for (k, digit) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
 }
 
 fn number(value: f64) -> String {

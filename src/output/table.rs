@@ -1,75 +1,129 @@
-//! One CSV table, written row by row: comma, a header line, LF, quotes only where they are needed.
+//! One table, written row by row, in the form that the name of its file asks for.
 
-use crate::base::write_number;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
+
+use super::columnar::{Columnar, Layout};
+use super::columns::Column;
+use super::comma_separated::CommaSeparated;
 
 /// A place to write to, with the name that messages give it.
 pub struct Sink {
-    /// `events.csv`, `standard output`.
+    /// `events.csv`, `standard output`. What stands behind the last dot says the form of a table.
     pub name: String,
     /// Where the bytes go; buffered here, so it need not be.
-    pub writer: Box<dyn Write>,
+    pub writer: Box<dyn Write + Send>,
 }
 
 /// A table that grows by rows; each cell is written in its turn.
 pub(super) struct Table {
     name: String,
-    writer: csv::Writer<BufWriter<Box<dyn Write>>>,
-    scratch: String,
+    form: Form,
+}
+
+enum Form {
+    Text(CommaSeparated),
+    Columns(Box<Columnar>),
 }
 
 impl Table {
-    /// A table with its header line.
-    pub(super) fn new<'a>(sink: Sink, header: impl IntoIterator<Item = &'a str>) -> io::Result<Self> {
-        let writer = csv::WriterBuilder::new()
-            .terminator(csv::Terminator::Any(b'\n'))
-            .from_writer(BufWriter::with_capacity(1 << 16, sink.writer));
-        let mut table = Self { name: sink.name, writer, scratch: String::new() };
-        for name in header {
-            table.text(name)?;
+    /// A table with these columns.
+    pub(super) fn new(sink: Sink, columns: &[Column]) -> io::Result<Self> {
+        let Sink { name, writer } = sink;
+        let form = match layout_of(&name) {
+            None => Ok(Form::Text(CommaSeparated::new(writer, columns))),
+            Some(layout) => {
+                Columnar::new(layout, writer, columns).map(|table| Form::Columns(Box::new(table)))
+            }
+        };
+        let form = form.map_err(|error| named(&name, &error))?;
+        Ok(Self { name, form })
+    }
+
+    /// A cell without a value.
+    #[inline]
+    pub(super) fn empty(&mut self) {
+        match &mut self.form {
+            Form::Text(table) => table.text(""),
+            Form::Columns(table) => table.empty(),
         }
-        table.end_row()?;
-        Ok(table)
     }
 
     /// A cell of text.
-    pub(super) fn text(&mut self, text: &str) -> io::Result<()> {
-        self.writer.write_field(text).map_err(|error| named(&self.name, unwrapped(error)))
+    #[inline]
+    pub(super) fn text(&mut self, text: &str) {
+        match &mut self.form {
+            Form::Text(table) => table.text(text),
+            Form::Columns(table) => table.text(text),
+        }
     }
 
     /// A cell with a number.
-    pub(super) fn number(&mut self, value: f64) -> io::Result<()> {
-        self.scratch.clear();
-        write_number(&mut self.scratch, value);
-        self.writer.write_field(&self.scratch).map_err(|error| named(&self.name, unwrapped(error)))
+    #[inline]
+    pub(super) fn number(&mut self, value: f64) {
+        match &mut self.form {
+            Form::Text(table) => table.number(value),
+            Form::Columns(table) => table.number(value),
+        }
     }
 
     /// A cell with a whole number.
-    pub(super) fn count(&mut self, value: usize) -> io::Result<()> {
-        self.text(&value.to_string())
+    #[inline]
+    pub(super) fn count(&mut self, value: usize) {
+        match &mut self.form {
+            Form::Text(table) => table.count(value),
+            Form::Columns(table) => table.count(value),
+        }
+    }
+
+    /// A cell that is true or false.
+    #[inline]
+    pub(super) fn boolean(&mut self, value: bool) {
+        match &mut self.form {
+            Form::Text(table) => table.text(if value { "true" } else { "false" }),
+            Form::Columns(table) => table.boolean(value),
+        }
     }
 
     /// Ends the row.
+    #[inline]
     pub(super) fn end_row(&mut self) -> io::Result<()> {
-        let none: Option<&[u8]> = None;
-        self.writer.write_record(none).map_err(|error| named(&self.name, unwrapped(error)))
+        let done = match &mut self.form {
+            Form::Text(table) => table.end_row(),
+            Form::Columns(table) => table.end_row(),
+        };
+        done.map_err(|error| named(&self.name, &error))
     }
 
-    /// Hands on all that has been written so far.
+    /// Hands on the rows so far, as far as the form allows before the end.
     pub(super) fn flush(&mut self) -> io::Result<()> {
-        self.writer.flush().map_err(|error| named(&self.name, error))
+        let done = match &mut self.form {
+            Form::Text(table) => table.flush(),
+            Form::Columns(table) => table.flush(),
+        };
+        done.map_err(|error| named(&self.name, &error))
+    }
+
+    /// Hands on all rows, and the end of the table.
+    pub(super) fn finish(&mut self) -> io::Result<()> {
+        let done = match &mut self.form {
+            Form::Text(table) => table.flush(),
+            Form::Columns(table) => table.finish(),
+        };
+        done.map_err(|error| named(&self.name, &error))
     }
 }
 
-/// The failure of the place written to; rows of unequal length are the only other failure of the library.
-fn unwrapped(error: csv::Error) -> io::Error {
-    match error.into_kind() {
-        csv::ErrorKind::Io(error) => error,
-        other => io::Error::other(format!("{other:?}")),
+/// `.arrow`, `.arrows`, `.parquet`; everything else is text.
+fn layout_of(name: &str) -> Option<Layout> {
+    match name.rsplit_once('.')?.1.to_ascii_lowercase().as_str() {
+        "arrows" => Some(Layout::Stream),
+        "arrow" => Some(Layout::File),
+        "parquet" => Some(Layout::Parquet),
+        _ => None,
     }
 }
 
 /// The same failure, with the name of what could not be written.
-fn named(name: &str, error: io::Error) -> io::Error {
+fn named(name: &str, error: &io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("cannot write `{name}`: {error}"))
 }

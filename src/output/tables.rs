@@ -1,15 +1,23 @@
 //! All tables of a run as one observer; each is there only if it is asked for.
 
+use std::collections::BTreeMap;
 use std::io;
+use std::time::{Duration, Instant};
 
 use super::cast::Cast;
+use super::columns::Column;
 use super::event_log::EventLog;
 use super::explanations::Explanations;
 use super::final_states::FinalStates;
 use super::table::Sink;
 use super::trajectory::Trajectory;
 use crate::base::SourceMap;
-use crate::runtime::observe::{Event, Explanation, Last, Observer, Progress, Row, Undecided};
+use crate::runtime::observe::{Event, Explanation, Last, Observer, Progress, Row, Undecided, Who};
+
+/// How long what has been told may wait before it is in the files.
+const WAIT: Duration = Duration::from_secs(1);
+/// So many rows are timed, then one of as many.
+const TIMED: u64 = 64;
 
 /// The observer that writes tables. Begin with [`Tables::new`], add what is wanted, end with [`Tables::flush`].
 pub struct Tables<'a> {
@@ -19,6 +27,13 @@ pub struct Tables<'a> {
     final_states: Option<FinalStates>,
     explanations: Option<Explanations<'a>>,
     on_progress: Box<dyn FnMut(&Progress) + 'a>,
+    also: Option<&'a mut dyn Observer>,
+    flushed: Instant,
+    /// Rows so far, and the time that writing them took.
+    rows: u64,
+    writing: Duration,
+    /// Events of each agent.
+    events: BTreeMap<Who, u64>,
 }
 
 impl<'a> Tables<'a> {
@@ -31,6 +46,11 @@ impl<'a> Tables<'a> {
             final_states: None,
             explanations: None,
             on_progress: Box::new(|_| {}),
+            also: None,
+            flushed: Instant::now(),
+            rows: 0,
+            writing: Duration::ZERO,
+            events: BTreeMap::new(),
         }
     }
 
@@ -41,7 +61,7 @@ impl<'a> Tables<'a> {
     }
 
     /// Adds the table of the next record of the run's settings; records must be added in their order, all of them.
-    pub fn trajectory(&mut self, sink: Sink, columns: &[String]) -> io::Result<()> {
+    pub fn trajectory(&mut self, sink: Sink, columns: &[Column]) -> io::Result<()> {
         self.trajectories.push(Trajectory::new(sink, columns)?);
         Ok(())
     }
@@ -62,30 +82,78 @@ impl<'a> Tables<'a> {
         self.on_progress = Box::new(action);
     }
 
-    /// Hands on all that has been written. Tries every table, and returns the first failure.
-    pub fn flush(&mut self) -> io::Result<()> {
+    /// Adds an observer that is told the same events and samples.
+    pub fn also(&mut self, observer: &'a mut dyn Observer) {
+        self.also = Some(observer);
+    }
+
+    /// Hands on all that has been written, and the ends of the tables. Tries every table, and returns the first failure.
+    pub fn finish(&mut self) -> io::Result<()> {
+        let begun = Instant::now();
         let mut results = Vec::new();
-        results.extend(self.event_log.as_mut().map(EventLog::flush));
-        results.extend(self.trajectories.iter_mut().map(Trajectory::flush));
-        results.extend(self.final_states.as_mut().map(FinalStates::flush));
+        results.extend(self.event_log.as_mut().map(EventLog::finish));
+        results.extend(self.trajectories.iter_mut().map(Trajectory::finish));
+        results.extend(self.final_states.as_mut().map(FinalStates::finish));
         results.extend(self.explanations.as_mut().map(Explanations::flush));
+        self.writing += begun.elapsed();
         results.into_iter().collect()
+    }
+
+    /// Who had most events, and how many; among equals, in the order of their numbers.
+    pub fn busiest(&self, n: usize) -> Vec<(String, u64)> {
+        let mut counts: Vec<_> = self.events.iter().map(|(&agent, &count)| (agent, count)).collect();
+        counts.sort_by_key(|&(agent, count)| (std::cmp::Reverse(count), agent));
+        counts.truncate(n);
+        counts.into_iter().map(|(agent, count)| (self.cast.agent(agent).into_owned(), count)).collect()
+    }
+
+    /// About how long writing took: of many rows, some are timed.
+    pub fn writing(&self) -> Duration {
+        self.writing
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.flushed = Instant::now();
+        self.event_log.as_mut().map_or(Ok(()), EventLog::flush)?;
+        self.trajectories.iter_mut().try_for_each(Trajectory::flush)?;
+        self.explanations.as_mut().map_or(Ok(()), Explanations::flush)
+    }
+
+    fn timed(&mut self, write: impl FnOnce(&mut Self) -> io::Result<()>) -> io::Result<()> {
+        self.rows += 1;
+        let each = self.rows <= TIMED;
+        if !each && !self.rows.is_multiple_of(TIMED) {
+            return write(self);
+        }
+        let begun = Instant::now();
+        let written = write(self);
+        self.writing += begun.elapsed() * if each { 1 } else { TIMED as u32 };
+        written
     }
 }
 
 impl Observer for Tables<'_> {
     fn event(&mut self, event: &Event<'_>) -> io::Result<()> {
-        match &mut self.event_log {
-            Some(log) => log.event(self.cast, event),
-            None => Ok(()),
+        if let Some(also) = &mut self.also {
+            also.event(event)?;
         }
+        for agent in [Some(event.agent), event.other].into_iter().flatten() {
+            *self.events.entry(agent).or_default() += 1;
+        }
+        self.timed(|tables| match &mut tables.event_log {
+            Some(log) => log.event(tables.cast, event),
+            None => Ok(()),
+        })
     }
 
     fn sample(&mut self, record: usize, row: &Row<'_>) -> io::Result<()> {
-        match self.trajectories.get_mut(record) {
-            Some(trajectory) => trajectory.sample(self.cast, row),
-            None => Ok(()),
+        if let Some(also) = &mut self.also {
+            also.sample(record, row)?;
         }
+        self.timed(|tables| match tables.trajectories.get_mut(record) {
+            Some(trajectory) => trajectory.sample(tables.cast, row),
+            None => Ok(()),
+        })
     }
 
     fn last(&mut self, last: &Last<'_>) -> io::Result<()> {
@@ -97,7 +165,7 @@ impl Observer for Tables<'_> {
 
     fn progress(&mut self, progress: &Progress) -> io::Result<()> {
         (self.on_progress)(progress);
-        Ok(())
+        if self.flushed.elapsed() >= WAIT { self.flush() } else { Ok(()) }
     }
 
     fn wants_reasons(&self) -> bool {

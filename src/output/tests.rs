@@ -1,23 +1,21 @@
 //! Tables as text: each column, each kind of cell, numbers that read back, failures that name their file.
 
-use std::cell::RefCell;
 use std::io::{self, Write};
-use std::rc::Rc;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock, Mutex};
 
 use super::*;
 use crate::base::{Diagnostic, SourceMap, write_number};
 use crate::runtime::observe::{
-    Cell, End, Event, FalseAssert, Last, Observer, Outcome, Row, Stats, TypeStats,
+    Cell, End, Event, FalseAssert, Last, Observer, Outcome, Row, Stats, TypeStats, Who,
 };
 
 /// Bytes that a test can look at afterwards.
 #[derive(Clone, Default)]
-struct Page(Rc<RefCell<Vec<u8>>>);
+struct Page(Arc<Mutex<Vec<u8>>>);
 
 impl Write for Page {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.borrow_mut().extend_from_slice(bytes);
+        self.0.lock().unwrap().extend_from_slice(bytes);
         Ok(bytes.len())
     }
     fn flush(&mut self) -> io::Result<()> {
@@ -30,7 +28,7 @@ impl Page {
         Sink { name: "page".into(), writer: Box::new(self.clone()) }
     }
     fn text(&self) -> String {
-        String::from_utf8(self.0.borrow().clone()).unwrap()
+        String::from_utf8(self.0.lock().unwrap().clone()).unwrap()
     }
 }
 
@@ -51,14 +49,28 @@ fn cast() -> Cast {
     Cast {
         agents: names(&["fast", "cars[0]", "odd, name"]),
         types: vec![
-            TypeColumns { states: names(&["x", "y"]), discretes: names(&["lane"]) },
-            TypeColumns { states: names(&["y"]), discretes: names(&["on"]) },
+            TypeColumns {
+                name: "Car".into(),
+                states: names(&["x", "y"]),
+                discretes: names(&["lane"]),
+                discrete_kinds: vec![Kind::Number],
+            },
+            TypeColumns {
+                name: "Lamp".into(),
+                states: names(&["y"]),
+                discretes: names(&["on"]),
+                discrete_kinds: vec![Kind::Bool],
+            },
         ],
     }
 }
 
+fn who(number: usize) -> Who {
+    Who { number, ty: 0 }
+}
+
 fn event(time: f64) -> Event<'static> {
-    Event { time, micro: 0, transition: "Car.left", agent: 0, other: None, modes: None }
+    Event { time, micro: 0, transition: "Car.left", agent: who(0), other: None, modes: None }
 }
 
 #[test]
@@ -103,12 +115,12 @@ fn an_event_is_one_row() {
         time: 1e-9,
         micro: 2,
         transition: "Bump.pair",
-        agent: 1,
-        other: Some(2),
+        agent: who(1),
+        other: Some(who(2)),
         modes: Some(("Drive.Cruise", "Brake")),
     };
     tables.event(&bump).unwrap();
-    tables.flush().unwrap();
+    tables.finish().unwrap();
     assert_eq!(
         page.text(),
         "time,micro,transition,agent,other,from,to\n\
@@ -121,13 +133,19 @@ fn an_event_is_one_row() {
 fn each_record_has_its_table_and_each_kind_of_cell_its_form() {
     let (cast, first, second) = (cast(), Page::default(), Page::default());
     let mut tables = Tables::new(&cast);
-    tables.trajectory(first.sink(), &["x".into()]).unwrap();
-    let columns: Vec<String> = ["a", "b", "c", "d", "e"].map(String::from).into();
+    tables.trajectory(first.sink(), &[Column::new("x", Kind::Number)]).unwrap();
+    let kinds = [Kind::Number, Kind::Number, Kind::Bool, Kind::Text, Kind::Text];
+    let columns: Vec<Column> = ["a", "b", "c", "d", "e"]
+        .into_iter()
+        .zip(kinds)
+        .map(|(name, kind)| Column::new(name, kind))
+        .collect();
     tables.trajectory(second.sink(), &columns).unwrap();
-    let cells = [Cell::Empty, Cell::Number(2.0), Cell::Bool(true), Cell::Agent(Some(1)), Cell::Agent(None)];
-    let row = Row { time: 0.25, micro: 1, agent: 0, mode: "Spiral", cells: &cells };
+    let cells =
+        [Cell::Empty, Cell::Number(2.0), Cell::Bool(true), Cell::Agent(Some(who(1))), Cell::Agent(None)];
+    let row = Row { time: 0.25, micro: 1, agent: who(0), mode: "Spiral", cells: &cells };
     tables.sample(1, &row).unwrap();
-    tables.flush().unwrap();
+    tables.finish().unwrap();
     assert_eq!(first.text(), "time,micro,agent,mode,x\n");
     assert_eq!(second.text(), "time,micro,agent,mode,a,b,c,d,e\n0.25,1,fast,Spiral,,2,true,cars[0],none\n");
 }
@@ -137,13 +155,25 @@ fn final_states_of_several_types_share_columns_by_name() {
     let (cast, page) = (cast(), Page::default());
     let mut tables = Tables::new(&cast);
     tables.final_states(page.sink()).unwrap();
-    let car =
-        Last { time: 20.0, agent: 0, ty: 0, mode: "", states: &[1.0, 2.0], discretes: &[Cell::Number(3.0)] };
+    let car = Last {
+        time: 20.0,
+        agent: who(0),
+        ty: 0,
+        mode: "",
+        states: &[1.0, 2.0],
+        discretes: &[Cell::Number(3.0)],
+    };
     tables.last(&car).unwrap();
-    let lamp =
-        Last { time: 20.0, agent: 1, ty: 1, mode: "On", states: &[-0.5], discretes: &[Cell::Bool(false)] };
+    let lamp = Last {
+        time: 20.0,
+        agent: who(1),
+        ty: 1,
+        mode: "On",
+        states: &[-0.5],
+        discretes: &[Cell::Bool(false)],
+    };
     tables.last(&lamp).unwrap();
-    tables.flush().unwrap();
+    tables.finish().unwrap();
     assert_eq!(page.text(), "time,agent,mode,x,y,lane,on\n20,fast,,1,2,3,\n20,cars[0],On,,-0.5,,false\n");
 }
 
@@ -158,7 +188,7 @@ fn a_full_disk_is_reported_with_the_name_of_the_file() {
 }
 
 fn outcome(end: End) -> Outcome {
-    let ty = TypeStats { name: "Car".into(), agents: 3, steps: 40, events: 7 };
+    let ty = TypeStats { name: "Car".into(), agents: 3, created: 2, destroyed: 1, steps: 40, events: 7 };
     Outcome {
         end,
         time: 12.5,
@@ -174,7 +204,7 @@ fn outcome(end: End) -> Outcome {
             span: Default::default(),
             message: Some("rear-end collision".into()),
             time: 3.5,
-            agent: 1,
+            agent: who(1),
             mode: "Drive".into(),
             compared: Vec::new(),
             count: 2,
@@ -204,6 +234,9 @@ fn report<'a>(cast: &'a Cast, outcome: &'a Outcome, files: &'a [String]) -> Repo
         functions: 4,
         instructions: 100,
         code_bytes: 2000,
+        busiest: &[],
+        compile_parts: &[],
+        writing_seconds: 0.0,
         compile_seconds: 0.0042,
         run_seconds: 1.5,
         files,
@@ -246,7 +279,7 @@ fn statistics_have_the_promised_keys() {
 #[test]
 fn every_end_is_told() {
     let cast = cast();
-    let stop = End::Stop { reason: Some("all home".into()), agent: 1, by: "Car.home".into() };
+    let stop = End::Stop { reason: Some("all home".into()), agent: who(1), by: "Car.home".into() };
     let ends = [
         (End::Until, "ended at t = 12.5 s"),
         (stop, "stopped at t = 12.5 s by Car.home of cars[0]: all home"),
@@ -270,13 +303,23 @@ fn every_end_is_told() {
 fn a_summary_lists_what_fired_and_what_was_written() {
     let (cast, outcome) = (cast(), outcome(End::Until));
     let files = ["events.csv".to_string()];
+    let busiest = [("fast".to_string(), 6), ("cars[0]".to_string(), 1)];
+    let report = Report {
+        busiest: &busiest,
+        compile_parts: &[("reading", 0.0012), ("machine code", 0.003)],
+        writing_seconds: 0.25,
+        ..report(&cast, &outcome, &files)
+    };
     assert_eq!(
-        summary(&report(&cast, &outcome, &files)),
+        summary(&report),
         "models/cars.hy: ended at t = 12.5 s\n\
-         \x20 3 agents, 7 events, 40 steps (1 rejected), 0 right-hand sides\n\
-         \x20   Bump.pair  5\n\
-         \x20   Car.left   2\n\
-         \x20 compiled in 4.2 ms, ran in 1.50 s\n\
-         \x20 wrote events.csv\n"
+         \x20 3 agents, 7 events, 40 steps (1 rejected)\n\
+         \x20   Bump.pair  5  ########################\n\
+         \x20   Car.left   2  ##########\n\
+         \x20 busiest    fast (6 events), cars[0] (1 event)\n\
+         \x20 guards     evaluated 0 times at a point, 0 over an interval\n\
+         \x20 asserts    1 false, 2 times\n\
+         \x20 time       compiled in 4.2 ms (reading 1.2 ms, machine code 3.0 ms), ran in 1.50 s (250.0 ms of it writing)\n\
+         \x20 wrote      events.csv\n"
     );
 }

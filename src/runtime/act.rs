@@ -12,10 +12,11 @@ use crate::runtime::engine::{Engine, StopRequest};
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::fold;
 use crate::runtime::guards::Origin;
+use crate::runtime::lives::{Conceived, Doomed};
 use crate::runtime::mail::Message;
-use crate::runtime::population::Slots;
+use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::Depth;
-use crate::runtime::route::{Move, remember, route};
+use crate::runtime::route::{Move, reached, remember, route};
 use crate::runtime::truth;
 
 /// A value for a column of an agent.
@@ -25,7 +26,7 @@ pub struct Write {
     pub agent: usize,
     /// Which column.
     pub target: Target,
-    /// Its value; the number of a leaf for a mode.
+    /// Its value.
     pub value: f64,
     /// The assignment.
     pub span: Span,
@@ -42,6 +43,10 @@ pub struct Effect {
     pub moves: Vec<Move>,
     /// Messages, each with its delay, s.
     pub sent: Vec<(Message, f64)>,
+    /// Agents to be made.
+    pub conceived: Vec<Conceived>,
+    /// Agents to be removed.
+    pub doomed: Vec<Doomed>,
 }
 
 /// What the functions of a list of actions are read on.
@@ -64,6 +69,16 @@ pub struct Written {
     pub restarted: FxHashSet<usize>,
     /// Changes of mode.
     pub moves: Vec<Move>,
+    /// Agents still to be made, and still to be removed.
+    pub conceived: Vec<Conceived>,
+    /// See `conceived`.
+    pub doomed: Vec<Doomed>,
+    /// Agents that have been made.
+    pub born: Vec<usize>,
+    /// Types of agents that have been removed.
+    pub died: Vec<usize>,
+    /// Agents whose links lead somewhere else, and those who have lost a member of their group.
+    pub relinked: Vec<usize>,
 }
 
 impl Engine<'_, '_> {
@@ -72,7 +87,7 @@ impl Engine<'_, '_> {
         let (transition, pair) = match self.guards.definition(instance).origin {
             Origin::Transition(transition) => (transition, false),
             Origin::Pair(pair) => (&pair.transition, true),
-            Origin::Gate(_) | Origin::Claim(_) => return Ok(Effect::default()),
+            Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => return Ok(Effect::default()),
         };
         let mut effect = Effect::default();
         if let Some(target) = transition.target
@@ -155,11 +170,22 @@ impl Engine<'_, '_> {
                     self.exit(&change, &mut exit)?;
                     effect.exits.append(&mut exit.writes);
                     effect.sent.append(&mut exit.sent);
+                    effect.conceived.append(&mut exit.conceived);
+                    effect.doomed.append(&mut exit.doomed);
                     effect.moves.push(change);
                 }
                 ActionStep::Stop { reason, .. } => {
-                    let request = StopRequest { reason: reason.clone(), agent: slots[0], by: by.to_string() };
+                    let agent = self.agents.who(slots[0]);
+                    let request = StopRequest { reason: reason.clone(), agent, by: by.to_string() };
                     self.stop.get_or_insert(request);
+                }
+                ActionStep::Create(birth) => {
+                    effect.conceived.push(self.conceive(birth, &list.frame, slots, own)?);
+                }
+                ActionStep::Destroy { slot, span } => {
+                    if slots[*slot] != ABSENT {
+                        effect.doomed.push(Doomed { agent: slots[*slot], span: *span });
+                    }
                 }
             }
         }
@@ -188,7 +214,6 @@ impl Engine<'_, '_> {
         let variable = match write.target {
             Target::State(k) => system.state_name(k),
             Target::Aux(column) => system.discretes[column - system.layout.discrete(0)].name.clone(),
-            Target::Mode => "mode".into(),
         };
         Reason::ActionNotFinite {
             place: self.place(write.agent),
@@ -200,8 +225,9 @@ impl Engine<'_, '_> {
     }
 
     /// Writes the effects of a micro-step, then runs and writes the entry actions, outer modes first.
-    pub fn carry_out(&mut self, effects: &[Effect]) -> Result<Written, Failure> {
+    pub fn carry_out(&mut self, effects: Vec<Effect>) -> Result<Written, Failure> {
         let mut written = Written::default();
+        let mut moves: Vec<Move> = Vec::new();
         for effect in effects {
             for write in &effect.writes {
                 self.write(write, &mut written);
@@ -210,13 +236,16 @@ impl Engine<'_, '_> {
                 self.enter_mode(change, &mut written);
             }
             self.send(&effect.sent);
+            moves.extend(effect.moves);
+            written.conceived.extend(effect.conceived);
+            written.doomed.extend(effect.doomed);
         }
         self.present.forget();
-        let moves: Vec<Move> = effects.iter().flat_map(|effect| effect.moves.iter().cloned()).collect();
         let entries: Vec<(usize, &[usize])> =
             moves.iter().map(|change| (change.agent, change.entered.as_slice())).collect();
         self.run_entries(&entries, &mut written)?;
         written.moves = moves;
+        self.turn_over(&mut written)?;
         self.regroup(&mut written);
         self.set_locks(written.restarted.iter().copied());
         Ok(written)
@@ -229,19 +258,31 @@ impl Engine<'_, '_> {
         entries: &[(usize, &[usize])],
         written: &mut Written,
     ) -> Result<(), Failure> {
-        let depth = entries.iter().map(|(_, entered)| entered.len()).max().unwrap_or(0);
-        for level in 0..depth {
+        let types = &self.program.types;
+        let depths = |&(agent, entered): &(usize, &[usize])| {
+            let modes = &types[self.agents.agents[agent].ty].modes;
+            let depth = |mode: Option<&usize>| mode.map_or(0, |&mode| modes[mode].depth);
+            depth(entered.first())..depth(entered.last()) + 1
+        };
+        let levels: Vec<std::ops::Range<usize>> = entries.iter().map(depths).collect();
+        let n_levels = levels.iter().map(|depths| depths.len()).max().unwrap_or(0);
+        for level in 0..n_levels {
             let mut effect = Effect::default();
-            for &(agent, entered) in entries {
-                let Some(&mode) = entered.get(level) else { continue };
-                let node = &self.program.types[self.agents.agents[agent].ty].modes[mode];
-                let slots = self.agents.slots(&node.entry.frame, &[agent]);
-                self.run_list(&node.entry, &slots, &[agent], &node.path, &mut effect)?;
+            for (&(agent, entered), depths) in entries.iter().zip(&levels) {
+                let modes = &types[self.agents.agents[agent].ty].modes;
+                for node in
+                    entered.iter().map(|&mode| &modes[mode]).filter(|node| node.depth == depths.start + level)
+                {
+                    let slots = self.agents.slots(&node.entry.frame, &[agent]);
+                    self.run_list(&node.entry, &slots, &[agent], &node.path, &mut effect)?;
+                }
             }
             for write in &effect.writes {
                 self.write(write, written);
             }
             self.send(&effect.sent);
+            written.conceived.append(&mut effect.conceived);
+            written.doomed.append(&mut effect.doomed);
             self.present.forget();
         }
         Ok(())
@@ -258,7 +299,6 @@ impl Engine<'_, '_> {
                 self.restart_readers(write.agent, column, written);
                 self.agents.agents[write.agent].aux[column] = write.value;
             }
-            Target::Mode => {}
         }
     }
 
@@ -268,14 +308,14 @@ impl Engine<'_, '_> {
         self.restart_readers(change.agent, Layout::MODE, written);
         let time = self.present.time;
         let agent = &mut self.agents.agents[change.agent];
-        agent.mode = change.to;
-        agent.aux[Layout::MODE] = change.to as f64;
+        agent.mode = reached(&self.program.types[agent.ty], agent.mode, &change.left, &change.entered);
+        agent.aux[Layout::MODE] = agent.mode as f64;
         agent.aux[Layout::ENTRY] = time;
         remember(&self.program.types[agent.ty], &change.entered, &mut agent.aux);
     }
 
     /// Keeps an agent's rows as they were before this micro-step.
-    fn remember(&mut self, agent: usize, written: &mut Written) {
+    pub fn remember(&mut self, agent: usize, written: &mut Written) {
         if written.before.contains_key(&agent) {
             return;
         }
@@ -284,25 +324,32 @@ impl Engine<'_, '_> {
         written.before.insert(agent, (self.present.states(agent).to_vec(), aux));
     }
 
-    /// Ends the past of an agent's group here: its segments are cut, its next step begins afresh.
+    /// Ends the past of an agent's group here: its segments are cut, its next step begins afresh. So it is with all groups
+    /// whose flows read it.
     pub fn restart(&mut self, agent: usize, written: &mut Written) {
-        if written.restarted.contains(&agent) {
-            return;
-        }
-        self.thaw(agent);
-        let number = self.agents.agents[agent].group;
         let time = self.present.time;
-        let group = &mut self.groups.groups[number];
-        if group.clock > time && group.clock < f64::INFINITY {
-            self.n_cuts += group.members.len() as u64;
+        let mut waiting = vec![agent];
+        while let Some(agent) = waiting.pop() {
+            if written.restarted.contains(&agent) {
+                continue;
+            }
+            self.thaw(agent);
+            let number = self.agents.agents[agent].group;
+            let group = &mut self.groups.groups[number];
+            if group.clock > time && group.clock < f64::INFINITY {
+                self.n_cuts += group.members.len() as u64;
+            }
+            cut(&mut self.agents, group, time);
+            for &member in &group.members {
+                written.restarted.insert(member);
+                waiting.extend(self.agents.followers(member));
+            }
+            self.queue_clock(number);
         }
-        cut(&mut self.agents, group, time);
-        written.restarted.extend(group.members.iter().copied());
-        self.queue_clock(number);
     }
 
     /// Restarts the agents whose flow reads an auxiliary column of `agent`.
-    fn restart_readers(&mut self, agent: usize, column: usize, written: &mut Written) {
+    pub fn restart_readers(&mut self, agent: usize, column: usize, written: &mut Written) {
         for reader in self.agents.readers(agent) {
             let flow = self.agents.flow(reader);
             let slots = self.agents.slots(&flow.frame, &[reader]);
@@ -313,46 +360,37 @@ impl Engine<'_, '_> {
         }
     }
 
-    /// Divides the groups of agents that changed their mode anew (rule 13).
-    fn regroup(&mut self, written: &mut Written) {
-        if written.moves.is_empty() {
+    /// Divides the groups anew of agents that changed their mode or their links, or have come to be (rule 13).
+    pub fn regroup(&mut self, written: &mut Written) {
+        let mut changed: Vec<usize> = written.moves.iter().map(|change| change.agent).collect();
+        changed.extend(written.born.iter().chain(&written.relinked));
+        changed.retain(|&agent| self.agents.is_alive(agent));
+        changed.sort_unstable();
+        changed.dedup();
+        let is_free = |&agent: &usize| {
+            let group = &self.groups.groups[self.agents.agents[agent].group];
+            group.members.len() == 1 && group.leaders.is_empty() && self.agents.couples(agent).is_empty()
+        };
+        if changed.iter().all(is_free) {
             return;
         }
-        let mut concerned: Vec<usize> = Vec::new();
-        for change in &written.moves {
-            let mut with = vec![change.agent];
-            with.extend(crate::runtime::groups::couples(&self.agents, change.agent));
-            for agent in with {
-                let group = self.agents.agents[agent].group;
-                if !concerned.contains(&group) {
-                    concerned.push(group);
-                }
-            }
-        }
-        let alone = |group: &usize| self.groups.groups[*group].members.len() == 1;
-        if concerned.iter().all(alone) && concerned.len() == written.moves.len() {
-            let coupled = written
-                .moves
-                .iter()
-                .any(|change| !crate::runtime::groups::couples(&self.agents, change.agent).is_empty());
-            if !coupled {
-                return;
-            }
-        }
-        let mut members: Vec<usize> = Vec::new();
-        for &group in &concerned {
-            members.extend_from_slice(&self.groups.groups[group].members);
-        }
+        let members = self.groups.closed(&self.agents, changed);
         for &agent in &members {
             self.restart(agent, written);
+            for leader in self.agents.couples(agent) {
+                self.thaw(leader);
+            }
         }
         let time = self.present.time;
         let mut steps: FxHashMap<usize, Option<f64>> = FxHashMap::default();
         for &agent in &members {
             steps.insert(agent, self.groups.groups[self.agents.agents[agent].group].integration.h);
         }
-        for &group in &concerned {
-            self.groups.dissolve(group);
+        for &agent in &members {
+            let group = self.agents.agents[agent].group;
+            if !self.groups.groups[group].members.is_empty() {
+                self.groups.dissolve(group);
+            }
         }
         let made = self
             .groups
@@ -378,34 +416,74 @@ impl Engine<'_, '_> {
     }
 }
 
-/// The columns that a firing may write: exit, transition and entry actions together, both branches of an `if`; its mode
-/// stands for the region (rule 4).
-pub fn claims(engine: &Engine<'_, '_>, instance: u32, slots: &Slots) -> Vec<(usize, Target)> {
+/// What a firing takes for itself in a micro-step (rule 4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Claimed {
+    /// A column of an agent, which it may write.
+    Column(Target),
+    /// A region of an agent, by its number among those of its type.
+    Region(usize),
+}
+
+/// What a firing takes: the columns that exit, transition and entry actions together may write, both branches of an `if`; the
+/// region of its mode; all regions of an agent if it is of the agent itself, or an interaction that changes the agent's mode.
+pub fn claims(engine: &Engine<'_, '_>, instance: u32, slots: &Slots) -> Vec<(usize, Claimed)> {
     let mut claims = Vec::new();
     let (transition, pair): (&TransitionSystem, bool) = match engine.guards.definition(instance).origin {
         Origin::Transition(transition) => (transition, false),
         Origin::Pair(pair) => (&pair.transition, true),
-        Origin::Gate(_) | Origin::Claim(_) => return claims,
+        Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => return claims,
     };
-    claims.extend(transition.actions.writes.iter().map(|&(slot, target)| (slots[slot], target)));
+    let system = |agent: usize| &engine.program.types[engine.agents.agents[agent].ty];
+    let mut regions = |agent: usize, source: usize| {
+        let (ty, own) = (system(agent), system(agent).region_of(source));
+        let taken = (0..ty.regions.len()).filter(|&k| own.is_none_or(|own| own == ty.regions[k]));
+        claims.extend(taken.map(|k| (agent, Claimed::Region(k))));
+    };
     let mut moves = Vec::new();
-    if !pair {
-        claims.push((slots[0], Target::Mode));
-        moves.extend(transition.target.map(|target| engine.route(slots[0], transition.source, target)));
-    } else {
+    if pair {
         gotos(&transition.actions.steps, &mut |slot, target| {
-            moves.push(engine.route(slots[slot], 0, target))
+            regions(slots[slot], 0);
+            moves.push(engine.route(slots[slot], 0, target));
         });
+    } else {
+        regions(slots[0], transition.source);
+        moves.extend(transition.target.map(|target| engine.route(slots[0], transition.source, target)));
     }
+    dooms(&transition.actions.steps, &mut |slot| {
+        if slots[slot] != ABSENT {
+            regions(slots[slot], 0);
+        }
+    });
+    let own = transition.actions.writes.iter();
+    claims.extend(own.map(|&(slot, target)| (slots[slot], Claimed::Column(target))));
     for change in moves {
-        claims.push((change.agent, Target::Mode));
-        let modes = &engine.program.types[engine.agents.agents[change.agent].ty].modes;
+        let modes = &system(change.agent).modes;
         let lists = change.left.iter().map(|&mode| &modes[mode].exit);
         for list in lists.chain(change.entered.iter().map(|&mode| &modes[mode].entry)) {
-            claims.extend(list.writes.iter().map(|&(_, target)| (change.agent, target)));
+            claims.extend(list.writes.iter().map(|&(_, target)| (change.agent, Claimed::Column(target))));
         }
     }
     claims
+}
+
+/// Calls `visit` with the slot of every agent that some actions remove.
+fn dooms(steps: &[ActionStep], visit: &mut dyn FnMut(usize)) {
+    for step in steps {
+        match step {
+            ActionStep::Destroy { slot, .. } => visit(*slot),
+            ActionStep::If { then, otherwise, .. } => {
+                dooms(then, visit);
+                dooms(otherwise, visit);
+            }
+            ActionStep::Assign { .. }
+            | ActionStep::Draw { .. }
+            | ActionStep::Emit { .. }
+            | ActionStep::Goto { .. }
+            | ActionStep::Stop { .. }
+            | ActionStep::Create(_) => {}
+        }
+    }
 }
 
 /// Calls `visit` with every change of mode in some actions.
@@ -420,7 +498,9 @@ fn gotos(steps: &[ActionStep], visit: &mut dyn FnMut(usize, Destination)) {
             ActionStep::Assign { .. }
             | ActionStep::Draw { .. }
             | ActionStep::Emit { .. }
-            | ActionStep::Stop { .. } => {}
+            | ActionStep::Stop { .. }
+            | ActionStep::Create(_)
+            | ActionStep::Destroy { .. } => {}
         }
     }
 }

@@ -8,11 +8,12 @@ use rustc_hash::FxHashSet;
 
 use crate::codegen::program::{Atom, Kink, KinkKind, Relation};
 use crate::codegen::trace::Blame;
+use crate::runtime::ahead::Way;
 use crate::runtime::detect::{AtomCurve, CurveRows};
 use crate::runtime::flow::{GroupFlow, Witness};
 use crate::runtime::groups::{Group, KinkHit};
 use crate::runtime::limits::Limits;
-use crate::runtime::population::{Agents, Slots};
+use crate::runtime::population::{Agent, Agents, Slots};
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::integrate::{Integrator, Stuck};
 use crate::runtime::solve::method::Stretch;
@@ -115,8 +116,18 @@ impl Stepper {
         self.stiff.contains(&(agent, mode))
     }
 
-    /// Advances a group by one step, which may end early at a kink.
+    /// Another agent has the place of one that is dead.
+    pub fn forget(&mut self, place: usize) {
+        if !self.stiff.is_empty() {
+            self.stiff.retain(|&(agent, _)| agent != place);
+        }
+    }
+
+    /// Advances a group by one step, taken now or before; it may end early at a kink.
     pub fn advance(&mut self, agents: &mut Agents<'_>, group: &mut Group, curves: &mut CurveRows) -> Advance {
+        if take_ahead(agents, group) {
+            return Advance::Moved;
+        }
         if !group.kinks.is_empty() {
             let hits = std::mem::take(&mut group.kinks);
             turn(agents, &hits);
@@ -126,8 +137,30 @@ impl Stepper {
         if group.clock == f64::INFINITY {
             return Advance::Moved;
         }
-        match self.accepted_step(agents, group) {
+        if let [agent] = group.members[..]
+            && retake(agents, agent, group)
+        {
+            return Advance::Moved;
+        }
+        self.step(agents, group, curves)
+    }
+
+    /// Takes a step of a group from its clock.
+    pub fn step(&mut self, agents: &mut Agents<'_>, group: &mut Group, curves: &mut CurveRows) -> Advance {
+        let step_max = self.integrator.step_max;
+        let known = led_until(agents, group) - group.clock;
+        let wanted = group.integration.h;
+        self.integrator.step_max = step_max.min(known);
+        let accepted = self.accepted_step(agents, group);
+        self.integrator.step_max = step_max;
+        match accepted {
             Ok(stretch) => {
+                if let (Some(wanted), Some(next)) = (wanted, &mut group.integration.h)
+                    && stretch.h >= known
+                {
+                    // It was the leader's way that ended, not the accuracy.
+                    *next = next.max(wanted);
+                }
                 self.keep(agents, group, &stretch);
                 self.stop_at_kinks(agents, group, curves)
             }
@@ -219,12 +252,13 @@ impl Stepper {
         }
         let members = std::mem::take(&mut group.members);
         self.counts.starts += if group.integration.is_fresh() { members.len() as u64 } else { 0 };
-        let mut flow = GroupFlow::new(agents, &members, &self.absent);
+        let leaders = std::mem::take(&mut group.leaders);
+        let mut flow = GroupFlow::new(agents, &members, &leaders, &self.absent);
         let done = work(&mut self.integrator, &self.x, group, &mut flow);
         self.counts.rhs_evaluations += flow.evaluations;
         self.counts.jacobians += flow.jacobians;
         self.counts.operations += flow.operations;
-        group.members = members;
+        (group.members, group.leaders) = (members, leaders);
         done
     }
 
@@ -252,6 +286,29 @@ impl Stepper {
         group: &mut Group,
         curves: &mut CurveRows,
     ) -> Advance {
+        let start = agents.agents[group.members[0]].segment.start;
+        let ways: Vec<(usize, Option<usize>)> =
+            group.leaders.iter().map(|&leader| (leader, agents.way_from(leader, start))).collect();
+        ways.iter().for_each(|&(leader, way)| agents.exchange(leader, way));
+        let hits = self.first_kinks(agents, group, curves);
+        ways.iter().for_each(|&(leader, way)| agents.exchange(leader, way));
+        let Some((first, hits)) = hits else { return Advance::Moved };
+        shorten(agents, group, first);
+        if first > start {
+            group.kinks = hits;
+            return Advance::Moved;
+        }
+        turn(agents, &hits);
+        Advance::Turned(hits)
+    }
+
+    /// When the group's new segments first meet a kink, and all that they meet then.
+    fn first_kinks(
+        &mut self,
+        agents: &Agents<'_>,
+        group: &Group,
+        curves: &mut CurveRows,
+    ) -> Option<(f64, Vec<KinkHit>)> {
         let mut first = f64::INFINITY;
         let mut hits: Vec<KinkHit> = Vec::new();
         for &agent in &group.members {
@@ -275,17 +332,7 @@ impl Stepper {
                 hits.push(KinkHit { agent, kink: number, before, lock });
             }
         }
-        if hits.is_empty() {
-            return Advance::Moved;
-        }
-        let start = agents.agents[group.members[0]].segment.start;
-        cut(agents, group, first);
-        if first > start {
-            group.kinks = hits;
-            return Advance::Moved;
-        }
-        turn(agents, &hits);
-        Advance::Turned(hits)
+        (!hits.is_empty()).then_some((first, hits))
     }
 
     /// The member and state at which a step fails: the one whose rate is not finite first, or the one with the largest
@@ -306,7 +353,7 @@ impl Stepper {
 
     /// Takes the step that met a number that is not finite again, and looks where it comes from.
     fn undefined(&mut self, agents: &Agents<'_>, group: &Group) -> Obstacle {
-        let mut flow = GroupFlow::new(agents, &group.members, &self.absent);
+        let mut flow = GroupFlow::new(agents, &group.members, &group.leaders, &self.absent);
         let mut witness = Witness { flow: &mut flow, found: None };
         self.integrator.again(group.clock, &self.x, &group.integration, &mut witness);
         let found = witness.found;
@@ -333,8 +380,17 @@ fn member(agents: &Agents<'_>, group: &Group, index: usize) -> (usize, usize) {
     unreachable!("a group has the states of its members")
 }
 
-/// Cuts the last segments of a group at `t`, by dense output and without recomputation.
+/// Cuts the last segments of a group at `t`, by dense output and without recomputation; what has been taken beyond is void.
 pub fn cut(agents: &mut Agents<'_>, group: &mut Group, t: f64) {
+    for &member in &group.members {
+        agents.agents[member].ahead.clear();
+        agents.cold.void_track(member);
+    }
+    shorten(agents, group, t);
+}
+
+/// Ends the last step of a group at `t`.
+fn shorten(agents: &mut Agents<'_>, group: &mut Group, t: f64) {
     group.kinks.clear();
     if group.clock == f64::INFINITY {
         return;
@@ -353,6 +409,42 @@ pub fn cut(agents: &mut Agents<'_>, group: &mut Group, t: f64) {
     }
     group.integration.restart();
     group.version += 1;
+}
+
+/// Has a group take its next step as it has been taken ahead of its clock.
+fn take_ahead(agents: &mut Agents<'_>, group: &mut Group) -> bool {
+    let mut has_moved = false;
+    for &member in &group.members {
+        let agent = &mut agents.agents[member];
+        if let Some(Way { segment, states }) = agent.ahead.pop() {
+            group.clock = segment.end;
+            (agent.segment, agent.states) = (segment, states);
+            has_moved = true;
+        }
+    }
+    has_moved
+}
+
+/// Up to when a group may step: as far as its leaders are known; if its flow has kinks, on one step of each leader.
+fn led_until(agents: &Agents<'_>, group: &Group) -> f64 {
+    let has_kinks = || group.members.iter().any(|&member| !agents.flow(member).kinks.is_empty());
+    if group.leaders.is_empty() {
+        return f64::INFINITY;
+    }
+    let until = |leader: usize| {
+        if has_kinks() { agents.way_until(leader, group.clock) } else { agents.known_until(leader) }
+    };
+    group.leaders.iter().map(|&leader| until(leader)).fold(f64::INFINITY, f64::min)
+}
+
+/// Has an agent take its next step from its track, if it has been taken there.
+fn retake(agents: &mut Agents<'_>, agent: usize, group: &mut Group) -> bool {
+    let Agents { agents, cold, .. } = agents;
+    let Agent { states, segment, .. } = &mut agents[agent];
+    let Some(step) = cold.kept_step(agent, group.clock, states, segment) else { return false };
+    group.integration.note_accepted(step.start, step.h, step.ratio);
+    group.clock = step.end;
+    true
 }
 
 /// Sets the locks that some kinks change.

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 
 use crate::codegen::kernel::{AgentView, Kernel};
-use crate::codegen::program::{Atom, Relation, Trigger};
+use crate::codegen::program::{Atom, Relation, Slot, Trigger};
 use crate::runtime::act::Written;
 use crate::runtime::engine::{Due, Engine};
 use crate::runtime::failure::{Failure, Reason};
@@ -44,7 +44,7 @@ impl<'p> Engine<'p, '_> {
         self.draw_hazard(instance);
         for index in self.guards.atom_range(instance) {
             self.guards.atoms[index].slack = 0.0;
-            if !self.settle_far(index) {
+            if !self.guards.atoms[index].left_out && !self.settle_far(index) {
                 self.settle(index, rule, &Written::default());
             }
         }
@@ -124,8 +124,10 @@ impl<'p> Engine<'p, '_> {
         let folds = self.truths().gather(before.instance, kernel, &slots, Side::After);
         let g = truth::evaluate(&self.agents, &mut self.present, kernel, &slots, &folds);
         let mut touched = false;
-        let unchanged =
-            rule == Rule::Woken && folds.is_empty() && self.value_before(kernel, &slots, written) == Some(g);
+        let unchanged = rule == Rule::Woken
+            && folds.is_empty()
+            && !self.leads_elsewhere(index, written)
+            && self.value_before(kernel, &slots, written) == Some(g);
         let truth = if g.is_nan() || absent && !g.is_finite() {
             false
         } else if unchanged && before.rooted {
@@ -201,12 +203,33 @@ impl<'p> Engine<'p, '_> {
     pub fn reads_written(&self, index: usize, written: &Written) -> bool {
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
         let is_written = |agent: usize| written.before.contains_key(&agent);
-        if atom.slots.iter().any(|&slot| is_written(slots[slot])) {
+        if atom.slots.iter().any(|&slot| is_written(slots[slot])) || self.leads_elsewhere(index, written) {
             return true;
         }
         let quantified = &self.guards.definition(self.guards.atoms[index].instance).quantified;
         let may_belong = |&agent: &usize| quantified.contains(&self.agents.agents[agent].ty);
-        !atom.folds.is_empty() && written.before.keys().any(may_belong)
+        !atom.folds.is_empty()
+            && (written.before.keys().chain(&written.born).any(may_belong)
+                || written.died.iter().any(|ty| quantified.contains(ty)))
+    }
+
+    /// Whether a link by which a comparison reaches an agent leads somewhere else now.
+    fn leads_elsewhere(&self, index: usize, written: &Written) -> bool {
+        if written.relinked.is_empty() {
+            return false;
+        }
+        let (atom, slots) = self.guards.atom_slots(&self.agents, index);
+        let frame = self.guards.definition(self.guards.atoms[index].instance).frame;
+        atom.slots.iter().any(|&slot| {
+            let mut slot = slot;
+            while let Slot::Link { from, .. } = frame.slots[slot] {
+                if written.relinked.contains(&slots[from]) {
+                    return true;
+                }
+                slot = from;
+            }
+            false
+        })
     }
 
     /// Has an atom certified from `time` on; what was found beyond is void.
@@ -283,17 +306,27 @@ impl<'p> Engine<'p, '_> {
         let mut concerned: Vec<usize> = written.before.keys().chain(&written.restarted).copied().collect();
         concerned.sort_unstable();
         concerned.dedup();
-        self.relist(&concerned)?;
+        armed.extend(self.relist(&concerned, &written.born)?);
+        self.arm_born(written, &mut armed)?;
         let is_written = |agent: usize| written.before.contains_key(&agent);
         let is_concerned = |agent: usize| is_written(agent) || written.restarted.contains(&agent);
         let mut woken = Vec::new();
-        for instance in self.reading(&concerned) {
+        let mut reading = self.reading(&concerned);
+        for &ty in &written.died {
+            reading.extend_from_slice(&self.guards.over_type[ty]);
+        }
+        reading.sort_unstable();
+        reading.dedup();
+        let mut reach: Vec<usize> = concerned.iter().flat_map(|&agent| self.agents.readers(agent)).collect();
+        reach.sort_unstable();
+        reach.dedup();
+        for instance in reading {
             if !self.guards.instances[instance as usize].active {
                 continue;
             }
             let fresh = armed.contains(&instance);
-            for index in self.guards.atom_range(instance) {
-                if !fresh && self.stays_far(index, written) {
+            for index in self.concerned_atoms(instance, &reach) {
+                if self.guards.atoms[index].left_out || !fresh && self.stays_far(index, written) {
                     continue;
                 }
                 let (atom, slots) = self.guards.atom_slots(&self.agents, index);
@@ -313,6 +346,49 @@ impl<'p> Engine<'p, '_> {
             self.note_rising(instance);
         }
         Ok(woken)
+    }
+
+    /// The atoms of an instance that may read one of these agents, or reach one by links: all, if it is one of its own; else
+    /// those that are bound to one, if it has no aggregates.
+    fn concerned_atoms(&self, instance: u32, reach: &[usize]) -> Vec<usize> {
+        let definition = self.guards.definition(instance);
+        let is_own = self.guards.roots(instance).iter().any(|root| reach.binary_search(root).is_ok());
+        if is_own || !definition.folds.is_empty() || definition.quantified.is_empty() {
+            return self.guards.atom_range(instance).collect();
+        }
+        let bound = reach.iter().filter(|&&agent| definition.binds(self.agents.agents[agent].ty));
+        let mut atoms: Vec<usize> =
+            bound.flat_map(|&agent| self.guards.atoms_at(&self.agents, instance, agent)).collect();
+        atoms.sort_unstable();
+        atoms.dedup();
+        atoms
+    }
+
+    /// Arms the guards of agents that have come to be, and has those that range over them look at them; nothing is held.
+    fn arm_born(&mut self, written: &Written, armed: &mut FxHashSet<u32>) -> Result<(), Failure> {
+        for &agent in &written.born {
+            for instance in self.guards.of_agent[agent].clone() {
+                let definition = self.guards.definition(instance);
+                let is_pair = matches!(definition.origin, Origin::Pair(_));
+                let first = self.guards.instances[instance as usize].roots[0] as usize;
+                if (is_pair || inside(&self.agents, first, definition.mode)) && armed.insert(instance) {
+                    self.arm(instance, Rule::Fresh)?;
+                }
+            }
+        }
+        for &agent in &written.born {
+            for instance in self.guards.over_type[self.agents.agents[agent].ty].clone() {
+                if !self.guards.instances[instance as usize].active || armed.contains(&instance) {
+                    continue;
+                }
+                for index in self.guards.atoms_at(&self.agents, instance, agent) {
+                    if !self.guards.atoms[index].left_out && !self.settle_far(index) {
+                        self.settle(index, Rule::Fresh, &Written::default());
+                    }
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The instances that read any of these agents (or reach them by links), rising.
@@ -356,6 +432,9 @@ impl<'p> Engine<'p, '_> {
     pub fn arm_all(&mut self) -> Result<(), Failure> {
         for instance in 0..self.guards.instances.len() as u32 {
             let definition = self.guards.definition(instance);
+            if !self.guards.is_listed(instance) {
+                continue;
+            }
             let agent = self.guards.instances[instance as usize].roots[0] as usize;
             if matches!(definition.origin, Origin::Pair(_)) || inside(&self.agents, agent, definition.mode) {
                 self.arm(instance, Rule::Fresh)?;

@@ -10,7 +10,7 @@
 //!
 //! Known weak points are kept: see `docs/PAPER.md`.
 
-use crate::codegen::program::{Program, Relation};
+use crate::codegen::program::{ActionList, AgentSystem, Program, Relation};
 use crate::runtime::audit::Audit;
 use crate::runtime::certify::ENDLESS;
 use crate::runtime::definition::{folds_read, gate_of, guard_of};
@@ -24,9 +24,14 @@ use crate::runtime::solve::step_select::StepSelect;
 use crate::runtime::truth;
 use crate::runtime::watch::{Watch, clock};
 
-/// Whether the published algorithms can run a program: the members of every aggregate that a guard or a claim reads change
-/// at events only.
+/// Whether the published algorithms can run a program: nobody comes or goes, no link is kept up to date, and the members of
+/// every aggregate that a guard or a claim reads change at events only.
 pub fn takes(program: &Program) -> bool {
+    let makes = |list: &ActionList| !list.births().is_empty() || list.destroys();
+    let follows = |ty: &AgentSystem| ty.links.iter().any(|link| !link.updates.is_empty());
+    if program.action_lists().any(makes) || program.types.iter().any(follows) {
+        return false;
+    }
     let of_types = program.types.iter().flat_map(|ty| {
         let claims = ty.modes.iter().flat_map(|mode| &mode.claims);
         let claims = claims.map(|claim| (&claim.frame, Some(&claim.violation)));

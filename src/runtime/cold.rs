@@ -3,11 +3,13 @@
 use smallvec::SmallVec;
 
 use crate::codegen::program::{Flow, Program, Slot};
+use crate::math::Interval;
 use crate::runtime::herd::{Advanced, Herd};
 use crate::runtime::leap::{Covering, Leaps, STATES_MAX};
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::segment::{N_MAX, Segment};
 use crate::runtime::solve::series_step;
+use crate::runtime::tracks::TrackStep;
 
 /// A place in a herd.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,13 +81,6 @@ impl<'p> Cold<'p> {
         (&self.herds[herd as usize], place as usize)
     }
 
-    /// How far a cold agent has come, and its states there.
-    pub fn now(&self, agent: usize) -> (f64, SmallVec<[f64; 8]>) {
-        let (herd, place) = self.find(agent);
-        let (t, states) = herd.now(place);
-        (t, states.into())
-    }
-
     /// Whether the way of a cold agent at `t` is followed in its herd; before, it is on its last segment.
     pub fn knows(&self, agent: usize, t: f64) -> bool {
         let (herd, place) = self.find(agent);
@@ -102,6 +97,65 @@ impl<'p> Cold<'p> {
     ) -> Option<Covering> {
         let (herd, place) = self.find(agent);
         herd.follow(place, t, states, segment)
+    }
+
+    /// The states of a cold agent at `t`, from which or from before which its way is followed.
+    pub fn states_at(&self, agent: usize, t: f64, states: &mut [f64]) {
+        let (herd, place) = self.find(agent);
+        herd.states_at(place, t, states);
+    }
+
+    /// Forgets all tracks.
+    pub fn clear_tracks(&mut self) {
+        self.herds.iter_mut().for_each(|herd| herd.tracks.clear());
+    }
+
+    /// Of how many agents steps are kept.
+    pub fn n_tracked(&self) -> usize {
+        self.herds.iter().map(|herd| herd.tracks.wanted().len()).sum()
+    }
+
+    /// Has the steps of a cold agent kept when it is advanced next.
+    pub fn want_track(&mut self, agent: usize) {
+        let Place { herd, place, cold } = self.places[agent];
+        if cold {
+            self.herds[herd as usize].tracks.want(place as usize);
+        }
+    }
+
+    /// The steps that were kept of an agent are not its steps any more.
+    pub fn void_track(&mut self, agent: usize) {
+        if let Some(&Place { herd, place, .. }) = self.places.get(agent)
+            && herd != NONE
+        {
+            self.herds[herd as usize].tracks.void(place as usize);
+        }
+    }
+
+    /// The step that was kept of an agent, not cold now, from `t` on, and the states at its end.
+    pub fn kept_step(
+        &self,
+        agent: usize,
+        t: f64,
+        states: &mut [f64],
+        segment: &mut Segment,
+    ) -> Option<TrackStep> {
+        let &Place { herd, place, .. } = self.places.get(agent).filter(|place| place.herd != NONE)?;
+        let tracks = &self.herds[herd as usize].tracks;
+        let step = tracks.beginning(place as usize, t)?;
+        Some(tracks.take(step, states, segment))
+    }
+
+    /// Bounds of a state of a cold agent over [s, e], by the steps that were kept of it; none if they do not cover that.
+    pub fn range(&self, agent: usize, state: usize, span: (f64, f64)) -> Option<Interval> {
+        let (herd, place) = self.find(agent);
+        herd.tracks.range(place, state, span)
+    }
+
+    /// The time from which the way of a cold agent is followed, s.
+    pub fn known_from(&self, agent: usize) -> f64 {
+        let (herd, place) = self.find(agent);
+        herd.known(place).0
     }
 
     /// The time and the states from which the way of a cold agent is followed.
@@ -129,6 +183,20 @@ impl<'p> Cold<'p> {
         let place = &mut self.places[agent];
         place.cold = false;
         self.herds[place.herd as usize].halt(place.place as usize);
+    }
+
+    /// Makes room for an agent in a place that nobody has.
+    pub fn admit(&mut self, place: usize) {
+        let nowhere = Place { herd: NONE, place: 0, cold: false };
+        if place == self.places.len() {
+            self.places.push(nowhere);
+        }
+        self.places[place] = nowhere;
+    }
+
+    /// Takes an agent out that is not cold.
+    pub fn dismiss(&mut self, agent: usize) {
+        self.leave(agent);
     }
 
     /// Takes an agent out of its herd, if it is in one.

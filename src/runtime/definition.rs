@@ -4,8 +4,8 @@
 //! aggregate is a condition too: its comparisons stand before those of the guard, those of inner aggregates first.
 
 use crate::codegen::program::{
-    Atom, ClaimSystem, Condition, Frame, Guard, Near, PairTransition, Program, Quantified, Range, Relation,
-    Slot, TransitionSystem, Trigger,
+    Atom, ClaimSystem, Condition, Frame, Guard, LinkUpdate, Near, PairTransition, Program, Quantified, Range,
+    Relation, Slot, TransitionSystem, Trigger,
 };
 use crate::runtime::fold;
 use crate::runtime::population::Agents;
@@ -30,6 +30,8 @@ pub enum Origin<'p> {
     Pair(&'p PairTransition),
     /// An invariant or an assert.
     Claim(&'p ClaimSystem),
+    /// A case of a link that follows from an expression.
+    Link(&'p LinkUpdate),
 }
 
 impl<'p> Origin<'p> {
@@ -38,7 +40,7 @@ impl<'p> Origin<'p> {
         match self {
             Origin::Transition(transition) => Some(transition),
             Origin::Pair(pair) => Some(&pair.transition),
-            Origin::Gate(_) | Origin::Claim(_) => None,
+            Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => None,
         }
     }
 }
@@ -111,6 +113,9 @@ pub fn definitions<'p>(agents: &Agents<'p>, listing: Listing) -> Vec<Definition<
                 let (origin, frame) = (Origin::Gate(transition), &transition.frame);
                 definitions.push(define(agents, origin, ty, transition.source, frame, Some(gate)));
             }
+        }
+        for update in system.links.iter().flat_map(|link| &link.updates) {
+            definitions.push(define(agents, Origin::Link(update), ty, 0, &update.frame, Some(&update.stale)));
         }
         for (mode, node) in system.modes.iter().enumerate() {
             for claim in &node.claims {
@@ -190,19 +195,9 @@ fn define<'p>(
             quantified.dedup();
         }
     }
-    let lay_out = |lists: Vec<Vec<Range>>| {
-        let mut first = 0;
-        let mut shapes = Vec::new();
-        for binders in lists {
-            let n: usize = binders.iter().map(|binder| agents.of_type[binder.ty].len()).product();
-            shapes.push(AtomShape { first, binders });
-            first += n;
-        }
-        (shapes, first)
-    };
     let comparisons = binders.comparisons;
-    let (atoms, n_atoms) = lay_out(binders.atoms);
-    let (rising, n_rising) = lay_out(binders.rising);
+    let (atoms, n_atoms) = lay_out(agents, binders.atoms);
+    let (rising, n_rising) = lay_out(agents, binders.rising);
     Definition {
         origin,
         ty,
@@ -218,6 +213,33 @@ fn define<'p>(
         n_rising,
         quantified,
         near: &[],
+    }
+}
+
+/// Lays out lists of binders for the seats that there are; and how many places they take.
+fn lay_out(agents: &Agents<'_>, lists: Vec<Vec<Range>>) -> (Vec<AtomShape>, usize) {
+    let mut first = 0;
+    let mut shapes = Vec::new();
+    for binders in lists {
+        let n: usize = binders.iter().map(|binder| agents.seats[binder.ty].len()).product();
+        shapes.push(AtomShape { first, binders });
+        first += n;
+    }
+    (shapes, first)
+}
+
+impl Definition<'_> {
+    /// Lays its comparisons out anew, for the seats that there are now.
+    pub fn lay_out(&mut self, agents: &Agents<'_>) {
+        let binders = |shapes: &mut Vec<AtomShape>| shapes.drain(..).map(|shape| shape.binders).collect();
+        let (atoms, rising) = (binders(&mut self.atoms), binders(&mut self.rising));
+        (self.atoms, self.n_atoms) = lay_out(agents, atoms);
+        (self.rising, self.n_rising) = lay_out(agents, rising);
+    }
+
+    /// Whether comparisons of it are bound to agents of a type.
+    pub fn binds(&self, ty: usize) -> bool {
+        self.atoms.iter().chain(&self.rising).any(|shape| shape.binders.iter().any(|binder| binder.ty == ty))
     }
 }
 

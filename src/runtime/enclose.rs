@@ -159,6 +159,10 @@ impl Enclosures {
         t: f64,
         horizon: f64,
     ) -> Option<usize> {
+        if !group.leaders.is_empty() {
+            // Where its leaders get to is known as far as they have come only.
+            return None;
+        }
         if self.kept.len() <= number {
             self.kept.resize(number + 1, Vec::new());
             self.failed.resize(number + 1, (u32::MAX, 0.0, f64::INFINITY));

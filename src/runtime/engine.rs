@@ -13,13 +13,13 @@ use crate::runtime::comparisons;
 use crate::runtime::detect::CurveRows;
 use crate::runtime::enclose::Enclosures;
 use crate::runtime::failure::{Failure, Place, Reason};
-use crate::runtime::groups::Groups;
+use crate::runtime::groups::{Coupling, Groups};
 use crate::runtime::guards::{Guards, Listing, Origin, TooManyGuards};
 use crate::runtime::limits::Limits;
 use crate::runtime::mail::Mail;
 use crate::runtime::neighbours::Neighbours;
 use crate::runtime::notes::Notes;
-use crate::runtime::observe::{Cell, End, FalseAssert, Last, Observer, Outcome, Stats, TypeStats};
+use crate::runtime::observe::{Cell, End, FalseAssert, Last, Observer, Outcome, Stats, TypeStats, Who};
 use crate::runtime::paper::Form;
 use crate::runtime::population::Agents;
 use crate::runtime::present::{Depth, Present};
@@ -68,6 +68,17 @@ pub struct Queues {
     pub schedules: BinaryHeap<Due>,
     /// Groups, at their clocks; void if the clock has another value.
     pub clocks: BinaryHeap<Due>,
+}
+
+impl Queues {
+    /// Atom instances have new numbers: by old number, `moved`.
+    pub fn renumber_atoms(&mut self, moved: &[u32]) {
+        for queue in [&mut self.uncertified, &mut self.flips] {
+            let mut all = std::mem::take(queue).into_vec();
+            all.iter_mut().for_each(|due| due.number = moved[due.number as usize]);
+            *queue = all.into();
+        }
+    }
 }
 
 /// A run in progress.
@@ -148,7 +159,7 @@ pub struct StopRequest {
     /// The text given with it.
     pub reason: Option<String>,
     /// Who.
-    pub agent: usize,
+    pub agent: Who,
     /// The label of the transition or the path of the mode.
     pub by: String,
 }
@@ -157,7 +168,7 @@ impl<'p, 'o> Engine<'p, 'o> {
     /// A run that has not begun.
     pub fn new(
         program: &'p Program,
-        form: Form,
+        (form, coupling): (Form, Coupling),
         limits: &Limits,
         interrupt: &'o AtomicBool,
         observer: &'o mut dyn Observer,
@@ -188,7 +199,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             has_thawed: false,
             recorder: Recorder::new(program, time_end),
             repetitions: Repetitions::new(limits),
-            groups: Groups::default(),
+            groups: Groups::new(coupling),
             points: Vec::new(),
             registers: Vec::new(),
             queues: Queues::default(),
@@ -220,7 +231,7 @@ impl<'p, 'o> Engine<'p, 'o> {
     pub fn tell_last(&mut self) -> Result<(), Failure> {
         self.tell_undecided()?;
         let time = self.present.time;
-        for agent in 0..self.agents.len() {
+        for agent in self.agents.living() {
             self.present.make(&self.agents, &[agent], Depth::States);
             let row = &self.agents.agents[agent];
             let system = &self.program.types[row.ty];
@@ -247,7 +258,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             let mode = &self.agents.mode(agent).path;
             self.observer.last(&Last {
                 time,
-                agent,
+                agent: self.agents.who(agent),
                 ty: row.ty,
                 mode,
                 states: &states,
@@ -263,6 +274,8 @@ impl<'p, 'o> Engine<'p, 'o> {
         let types = self.program.types.iter().enumerate().map(|(ty, system)| TypeStats {
             name: system.name.clone(),
             agents: self.agents.of_type[ty].len() as u64,
+            created: self.agents.turnover[ty][0],
+            destroyed: self.agents.turnover[ty][1],
             steps: counts.steps_of_type[ty],
             events: self.events_of_type[ty],
         });
@@ -271,7 +284,7 @@ impl<'p, 'o> Engine<'p, 'o> {
                 match definition.origin {
                     Origin::Transition(transition) => Some((transition.label.clone(), firings)),
                     Origin::Pair(pair) => Some((pair.transition.label.clone(), firings)),
-                    Origin::Gate(_) | Origin::Claim(_) => None,
+                    Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => None,
                 }
             });
         let methods =
@@ -285,6 +298,8 @@ impl<'p, 'o> Engine<'p, 'o> {
             jacobians: counts.jacobians,
             guard_evaluations: self.curves.evaluations,
             guard_ranges: self.curves.ranges + self.enclosures.ranges + self.reaches.ranges,
+            places: self.agents.len() as u64,
+            guard_places: (self.guards.instances.len() + self.guards.atoms.len()) as u64,
             pairs_listed: self.guards.n_pairs,
             undecided_roots: self.n_undecided,
             cuts: self.n_cuts,
@@ -363,6 +378,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             Origin::Transition(transition) | Origin::Gate(transition) => (&transition.label, transition.span),
             Origin::Pair(pair) => (&pair.transition.label, pair.transition.span),
             Origin::Claim(claim) => (claim.message.as_deref().unwrap_or("invariant"), claim.span),
+            Origin::Link(update) => (&update.label, update.span),
         }
     }
 }

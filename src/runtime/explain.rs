@@ -34,6 +34,7 @@ impl Engine<'_, '_> {
         if let Some(notes) = &mut self.notes {
             notes.before.clone_from(&written.before);
             notes.moved = written.moves.iter().map(|change| change.agent).collect();
+            notes.born.clone_from(&written.born);
             notes.writers = writers;
         }
     }
@@ -57,8 +58,8 @@ impl Engine<'_, '_> {
             time,
             micro,
             transition,
-            agent: roots[0],
-            other: roots.get(1).copied(),
+            agent: self.agents.who(roots[0]),
+            other: roots.get(1).map(|&other| self.agents.who(other)),
             span,
             cause,
             shown,
@@ -90,7 +91,8 @@ impl Engine<'_, '_> {
         }
         let own_mode = self.guards.definition(instance).mode != 0;
         let moved = own_mode && notes.moved.contains(&(state.roots[0] as usize));
-        if state.entry == time && (moved || notes.writers.is_empty()) {
+        let is_new = notes.born.contains(&(state.roots[0] as usize));
+        if state.entry == time && (moved || is_new || notes.writers.is_empty()) {
             return (Cause::Entry, Before::Nothing);
         }
         match &notes.writers[..] {
@@ -151,14 +153,15 @@ impl Engine<'_, '_> {
             }
             Origin::Pair(pair) => (pair.transition.label.clone(), pair.transition.span),
             Origin::Claim(claim) => (String::new(), claim.span),
+            Origin::Link(update) => (update.label.clone(), update.span),
         };
         let transition = (!is_claim).then_some(label);
         notes.undecided.push(Undecided {
             from,
             to,
             transition,
-            agent: roots[0],
-            other: roots.get(1).copied(),
+            agent: self.agents.who(roots[0]),
+            other: roots.get(1).map(|&other| self.agents.who(other)),
             span,
             ends,
             why,

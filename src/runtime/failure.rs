@@ -72,7 +72,7 @@ impl Place {
     }
 
     /// The diagnostic with the place, the agent's values and its last steps.
-    fn add_to(&self, mut diagnostic: Diagnostic) -> Diagnostic {
+    pub fn add_to(&self, mut diagnostic: Diagnostic) -> Diagnostic {
         diagnostic = diagnostic.note(self.note());
         for (k, attempt) in self.attempts.iter().enumerate() {
             let who = if k == 0 { format!("the last steps of {}: ", self.agent) } else { String::new() };
@@ -108,7 +108,7 @@ fn with_compared(mut diagnostic: Diagnostic, compared: &[Compared]) -> Diagnosti
 }
 
 /// The diagnostic with what made a number that is not finite.
-fn with_blame(diagnostic: Diagnostic, blame: Option<&Blame>) -> Diagnostic {
+pub fn with_blame(diagnostic: Diagnostic, blame: Option<&Blame>) -> Diagnostic {
     let Some(Blame { span, made, operands }) = blame else { return diagnostic };
     let operands =
         operands.iter().map(|Valued { text, value }| format!("`{text}` = {}", number_text(*value)));

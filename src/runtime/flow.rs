@@ -1,4 +1,5 @@
-//! The right-hand side of a group: the flows of all its members at one time, the states of all in one row.
+//! The right-hand side of a group: the flows of all its members at one time, the states of all in one row. The states of
+//! leaders, who are not of the group, are those of their dense output at that time.
 
 use crate::codegen::kernel::AgentView;
 use crate::codegen::trace::{Blame, Point};
@@ -16,6 +17,11 @@ pub struct GroupFlow<'a, 'p> {
     members: &'a [usize],
     /// The agents that each member's flow reads.
     slots: Vec<Slots>,
+    /// Who is read and is not of the group.
+    leaders: &'a [usize],
+    /// The states of the leaders, one after the other, and their rates, at the time that was looked at last.
+    led: Vec<f64>,
+    led_rates: Vec<f64>,
     /// The row of an agent that is not there.
     absent: &'a [f64],
     /// Right-hand sides evaluated, one for each member.
@@ -27,10 +33,49 @@ pub struct GroupFlow<'a, 'p> {
 }
 
 impl<'a, 'p> GroupFlow<'a, 'p> {
-    /// The flow of some agents that step together; `absent` is a row for those that are not there.
-    pub fn new(agents: &'a Agents<'p>, members: &'a [usize], absent: &'a [f64]) -> Self {
+    /// The flow of some agents that step together, and who is led by others; `absent` is a row for those that are not there.
+    pub fn new(
+        agents: &'a Agents<'p>,
+        members: &'a [usize],
+        leaders: &'a [usize],
+        absent: &'a [f64],
+    ) -> Self {
         let slots = members.iter().map(|&agent| agents.slots(&agents.flow(agent).frame, &[agent])).collect();
-        Self { agents, members, slots, absent, evaluations: 0, jacobians: 0, operations: 0 }
+        let n_led = leaders.iter().map(|&leader| agents.agents[leader].states.len()).sum();
+        let (led, led_rates) = (vec![0.0; n_led], vec![0.0; n_led]);
+        Self {
+            agents,
+            members,
+            slots,
+            leaders,
+            led,
+            led_rates,
+            absent,
+            evaluations: 0,
+            jacobians: 0,
+            operations: 0,
+        }
+    }
+
+    /// Finds the states of the leaders at `t`.
+    fn look_at(&mut self, t: f64) {
+        let mut first = 0;
+        for &leader in self.leaders {
+            let n = self.agents.agents[leader].states.len();
+            self.agents.states_at(leader, t, &mut self.led[first..first + n]);
+            first += n;
+        }
+    }
+
+    /// Finds states and rates of the leaders at `t`.
+    fn look_at_rates(&mut self, t: f64) {
+        self.look_at(t);
+        let mut first = 0;
+        for &leader in self.leaders {
+            let n = self.agents.agents[leader].states.len();
+            self.agents.rates_at(leader, t, &mut self.led_rates[first..first + n]);
+            first += n;
+        }
     }
 }
 
@@ -44,15 +89,42 @@ impl GroupFlow<'_, '_> {
 
     /// What the flow of member `k` reads.
     fn views<'b>(&'b self, k: usize, x: &'b [f64]) -> Views<'b> {
-        if let [_] = self.members {
+        if let ([_], []) = (self.members, self.leaders) {
             views(self.agents, &self.slots[k], self.absent, x)
         } else {
-            group_views(self.agents, self.members, &self.slots[k], self.absent, x)
+            self.group_views(&self.slots[k], x)
         }
     }
 
+    /// Views for a member of a group; `x` holds the states of all members one after the other.
+    fn group_views<'b>(&'b self, slots: &Slots, x: &'b [f64]) -> Views<'b> {
+        slots
+            .iter()
+            .map(|&agent| {
+                if agent == ABSENT {
+                    return AgentView::absent(self.absent);
+                }
+                let row = &self.agents.agents[agent];
+                let place = |among: &[usize]| {
+                    let first = among.iter().take_while(|&&other| other != agent);
+                    let first: usize = first.map(|&other| self.agents.agents[other].states.len()).sum();
+                    first..first + row.states.len()
+                };
+                let (states, rates): (&[f64], &[f64]) = if self.members.binary_search(&agent).is_ok() {
+                    (&x[place(self.members)], &[])
+                } else if self.leaders.binary_search(&agent).is_ok() {
+                    (&self.led[place(self.leaders)], &self.led_rates[place(self.leaders)])
+                } else {
+                    (&row.states, &[])
+                };
+                AgentView { states, rates, accelerations: &[], aux: &row.aux }
+            })
+            .collect()
+    }
+
     /// Whose rate was not finite, and why.
-    pub fn blame(&self, undefined: &Undefined) -> Option<Blame> {
+    pub fn blame(&mut self, undefined: &Undefined) -> Option<Blame> {
+        self.look_at(undefined.time);
         let mut state = undefined.index;
         for (k, &agent) in self.members.iter().enumerate() {
             let n = self.agents.agents[agent].states.len();
@@ -111,6 +183,7 @@ impl Flow for Witness<'_, '_, '_> {
 
 impl Flow for GroupFlow<'_, '_> {
     fn rates(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
+        self.look_at(t);
         self.evaluations += self.members.len() as u64;
         let (mut first, mut operations) = (0, 0);
         for (k, &agent) in self.members.iter().enumerate() {
@@ -157,6 +230,7 @@ impl Flow for GroupFlow<'_, '_> {
     /// The blocks of the members' own Jacobians, each at the places of the agents in its slots.
     fn jacobian(&mut self, t: f64, x: &[f64], jacobian: &mut Jacobian) {
         jacobian.reset(x.len());
+        self.look_at(t);
         self.jacobians += self.members.len() as u64;
         let firsts = self.firsts();
         let mut values = Vec::new();
@@ -177,15 +251,16 @@ impl Flow for GroupFlow<'_, '_> {
         self.operations += operations;
     }
 
-    /// The second rates of states that stand still.
+    /// The second rates of states that stand still; leaders do not.
     fn time_rates(&mut self, t: f64, x: &[f64], rates: &mut [f64]) {
+        self.look_at_rates(t);
         let still = vec![0.0; self.absent.len()];
         let (mut first, mut operations) = (0, 0);
         for (k, &agent) in self.members.iter().enumerate() {
             let n = self.agents.agents[agent].states.len();
             let flow = self.agents.flow(agent);
             let own = &mut rates[first..first + n];
-            if self.agents.program.kernel(flow.rates).reads().time {
+            if self.agents.program.kernel(flow.rates).reads().time || !self.leaders.is_empty() {
                 let kernel = self.agents.program.kernel(flow.accelerations);
                 let mut views = self.views(k, x);
                 views.iter_mut().filter(|view| view.rates.is_empty()).for_each(|view| view.rates = &still);
@@ -212,35 +287,6 @@ fn views<'a>(agents: &'a Agents<'_>, slots: &Slots, absent: &'a [f64], x: &'a [f
             let other = &agents.agents[agent];
             let states = if slot == 0 || agent == slots[0] { x } else { &other.states };
             AgentView { states, rates: &[], accelerations: &[], aux: &other.aux }
-        })
-        .collect()
-}
-
-/// Views for a member of a group; `x` holds the states of all members one after the other.
-fn group_views<'a>(
-    agents: &'a Agents<'_>,
-    members: &[usize],
-    slots: &Slots,
-    absent: &'a [f64],
-    x: &'a [f64],
-) -> Views<'a> {
-    slots
-        .iter()
-        .map(|&agent| {
-            if agent == ABSENT {
-                return AgentView::absent(absent);
-            }
-            let mut first = 0;
-            let mut states: &[f64] = &agents.agents[agent].states;
-            for &member in members {
-                let n = agents.agents[member].states.len();
-                if member == agent {
-                    states = &x[first..first + n];
-                    break;
-                }
-                first += n;
-            }
-            AgentView { states, rates: &[], accelerations: &[], aux: &agents.agents[agent].aux }
         })
         .collect()
 }

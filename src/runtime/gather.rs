@@ -117,6 +117,10 @@ impl Engine<'_, '_> {
     /// is scheduled.
     fn happen(&mut self, mut concerned: Vec<u32>, now: Vec<Due>) -> Result<(), Failure> {
         let mut candidates = Vec::new();
+        // Links that the flow changed are updated first (rule 4).
+        self.repetitions.instant += 1;
+        let woken = self.refresh_links(&concerned)?;
+        concerned.extend(woken);
         for due in now {
             concerned.push(due.number);
             candidates.extend(self.scheduled(due.number));

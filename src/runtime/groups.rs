@@ -1,9 +1,12 @@
 //! Groups: agents whose flows read each other's states step together, on one clock (rule 13).
 //!
-//! The groups are the connected components of "the active flow of i reads states of j". An agent that is not coupled
-//! is a group of its own.
+//! With "the active flow of i reads states of j" as the edges of a graph, the groups are its strongly connected components: a
+//! follower whose leader does not read it has a clock of its own, and integrates from the leader's dense output. In the
+//! algorithms of 2004 they are its connected components. An agent that is not coupled is a group of its own.
 
-use crate::runtime::population::{ABSENT, Agents};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use crate::runtime::population::Agents;
 use crate::runtime::solve::integrate::Integration;
 
 /// Agents on one clock.
@@ -19,6 +22,8 @@ pub struct Group {
     pub modes: Vec<usize>,
     /// Kinks that the last step ends at: agent, kink of its flow, change of its lock.
     pub kinks: Vec<KinkHit>,
+    /// The agents outside that the flows of its members read, rising.
+    pub leaders: Vec<usize>,
     /// Changes whenever something that was derived from the group's future becomes void.
     pub version: u32,
 }
@@ -42,16 +47,29 @@ pub struct Groups {
     /// By number.
     pub groups: Vec<Group>,
     free: Vec<usize>,
-    together: bool,
+    coupling: Coupling,
+}
+
+/// Who shares a clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Coupling {
+    /// Who read each other, be it by way of others.
+    #[default]
+    Mutual,
+    /// Who read each other, or the same, or are read by the same: the paper calls them one agent.
+    Connected,
+    /// All.
+    Together,
 }
 
 impl Groups {
-    /// From now on all agents are one group, coupled or not.
-    pub fn step_together(&mut self) {
-        self.together = true;
+    /// No groups yet.
+    pub fn new(coupling: Coupling) -> Self {
+        Self { coupling, ..Self::default() }
     }
 
-    /// Divides `members` into groups that begin at time `clock`; each agent is told its group. Returns the groups made.
+    /// Divides `members`, with whom those share a clock ([`Groups::closed`]), into groups that begin at time `clock`; each
+    /// agent is told its group. Returns the groups made.
     pub fn divide(
         &mut self,
         agents: &mut Agents<'_>,
@@ -60,8 +78,7 @@ impl Groups {
         h: &dyn Fn(usize) -> Option<f64>,
     ) -> Vec<usize> {
         let mut made = Vec::new();
-        let components = if self.together { vec![members.to_vec()] } else { components(agents, members) };
-        for component in components {
+        for component in self.components(agents, members) {
             let number = self.free.pop().unwrap_or_else(|| {
                 self.groups.push(Group::default());
                 self.groups.len() - 1
@@ -72,16 +89,51 @@ impl Groups {
             for &agent in &component {
                 agents.agents[agent].group = number;
             }
+            let read = component.iter().flat_map(|&agent| agents.couples(agent));
+            let mut leaders: Vec<usize> =
+                read.filter(|agent| component.binary_search(agent).is_err()).collect();
+            leaders.sort_unstable();
+            leaders.dedup();
             self.groups[number] = Group {
                 members: component,
                 clock: if has_states { clock } else { f64::INFINITY },
                 integration: Integration::new(step),
                 version,
+                leaders,
                 ..Group::default()
             };
             made.push(number);
         }
         made
+    }
+
+    /// The agents that share a clock, each set rising, in order of their first members among `members`.
+    fn components(&self, agents: &Agents<'_>, members: &[usize]) -> Vec<Vec<usize>> {
+        match self.coupling {
+            Coupling::Mutual => mutual(agents, members),
+            Coupling::Connected => connected(agents, members),
+            Coupling::Together => vec![members.to_vec()],
+        }
+    }
+
+    /// Some agents with all who share, or are to share, a clock with any of them.
+    pub fn closed(&self, agents: &Agents<'_>, mut members: Vec<usize>) -> Vec<usize> {
+        if self.coupling == Coupling::Connected {
+            let read: Vec<usize> = members.iter().flat_map(|&agent| agents.couples(agent)).collect();
+            members.extend(read);
+        }
+        loop {
+            let with = self.components(agents, &members).into_iter().flatten();
+            let grouped =
+                with.flat_map(|agent| self.groups[agents.agents[agent].group].members.iter().copied());
+            let mut closed: Vec<usize> = grouped.collect();
+            closed.sort_unstable();
+            closed.dedup();
+            if closed.len() == members.len() {
+                return closed;
+            }
+            members = closed;
+        }
     }
 
     /// Dissolves a group.
@@ -94,25 +146,72 @@ impl Groups {
     }
 }
 
-/// The agents whose states the active flow of an agent reads.
-pub fn couples(agents: &Agents<'_>, agent: usize) -> Vec<usize> {
-    let flow = agents.flow(agent);
-    if flow.couples.is_empty() {
-        return Vec::new();
+/// The strongly connected components that hold any of `members` (R. Tarjan, Depth-first search and linear graph algorithms,
+/// SIAM J. Comput. 1, 1972), each rising, in order of their first members.
+fn mutual(agents: &Agents<'_>, members: &[usize]) -> Vec<Vec<usize>> {
+    struct Visit {
+        agent: usize,
+        couples: Vec<usize>,
+        next: usize,
     }
-    let slots = agents.slots(&flow.frame, &[agent]);
-    flow.couples.iter().map(|&slot| slots[slot]).filter(|&other| other != ABSENT && other != agent).collect()
+    // By agent: when it was found, and the earliest found that it leads to; no more once its component is complete.
+    let mut found: FxHashMap<usize, (usize, usize)> = FxHashMap::default();
+    let mut complete: FxHashSet<usize> = FxHashSet::default();
+    let (mut open, mut components): (Vec<usize>, Vec<Vec<usize>>) = (Vec::new(), Vec::new());
+    for &member in members {
+        let mut visits = Vec::new();
+        let mut discovered = (!found.contains_key(&member)).then_some(member);
+        loop {
+            if let Some(agent) = discovered.take() {
+                found.insert(agent, (found.len(), found.len()));
+                open.push(agent);
+                visits.push(Visit { agent, couples: agents.couples(agent), next: 0 });
+            }
+            let Some(Visit { agent, couples, next }) = visits.last_mut() else { break };
+            let agent = *agent;
+            if let Some(&other) = couples.get(*next) {
+                *next += 1;
+                match found.get(&other) {
+                    None => discovered = Some(other),
+                    Some(&(when, _)) if !complete.contains(&other) => lower(&mut found, agent, when),
+                    Some(_) => {}
+                }
+                continue;
+            }
+            visits.pop();
+            let (when, lowest) = found[&agent];
+            if let Some(before) = visits.last() {
+                lower(&mut found, before.agent, lowest);
+            }
+            if when == lowest {
+                let first = open.iter().rposition(|&other| other == agent).unwrap_or(0);
+                let mut component = open.split_off(first);
+                complete.extend(&component);
+                component.sort_unstable();
+                components.push(component);
+            }
+        }
+    }
+    let wanted: FxHashSet<usize> = members.iter().copied().collect();
+    components.retain(|component| component.iter().any(|agent| wanted.contains(agent)));
+    components.sort_unstable();
+    components
+}
+
+/// Notes that an agent leads to one that was found at `when`.
+fn lower(found: &mut FxHashMap<usize, (usize, usize)>, agent: usize, when: usize) {
+    found.entry(agent).and_modify(|(_, lowest)| *lowest = when.min(*lowest));
 }
 
 /// The connected components of `members`, each rising, in order of their first members.
-fn components(agents: &Agents<'_>, members: &[usize]) -> Vec<Vec<usize>> {
+fn connected(agents: &Agents<'_>, members: &[usize]) -> Vec<Vec<usize>> {
     let mut sorted = members.to_vec();
     sorted.sort_unstable();
     sorted.dedup();
     let place = |agent: usize| sorted.binary_search(&agent).ok();
     let mut root: Vec<usize> = (0..sorted.len()).collect();
     for (k, &agent) in sorted.iter().enumerate() {
-        for other in couples(agents, agent) {
+        for other in agents.couples(agent) {
             if let Some(other) = place(other) {
                 let (a, b) = (find(&mut root, k), find(&mut root, other));
                 root[a.max(b)] = a.min(b);

@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 use crate::codegen::program::{Atom, Quantified, Range, Relation, Trigger};
 use crate::runtime::definition::{AtomShape, Definition, definitions};
 pub use crate::runtime::definition::{Listing, Origin};
-use crate::runtime::population::{Agents, Slots};
+use crate::runtime::population::{ABSENT, Agents, Slots};
 
 /// An instance of a definition.
 #[derive(Clone, Debug)]
@@ -47,7 +47,7 @@ pub struct AtomState {
     pub truth: bool,
     /// Changes its truth at this instant and is closed or a crossing, so that it is true in it.
     pub touched: bool,
-    /// Whether `other` leaves out what it binds: nobody reads its truth.
+    /// Whether `other` leaves out what it binds, or nobody has the seat: nobody reads its truth.
     pub left_out: bool,
     /// Whether its truth was given by a root at `certified`: it counts as found in that instant (rule 4).
     pub rooted: bool,
@@ -89,8 +89,13 @@ pub struct Leap {
 }
 
 impl AtomState {
+    /// Of a seat that nobody has.
+    pub fn unread(instance: u32) -> Self {
+        Self { left_out: true, ..Self::new(instance) }
+    }
+
     /// Of an instance that has not been active.
-    fn new(instance: u32) -> Self {
+    pub fn new(instance: u32) -> Self {
         Self {
             instance,
             truth: false,
@@ -132,8 +137,10 @@ pub struct Guards<'p> {
     pub over_type: Vec<Vec<u32>>,
     /// How many instances range over more than one agent (pairs, and bindings of quantifiers), those listed anew included.
     pub n_pairs: u64,
-    /// For each definition, instances of pairs that are not listed any more, to be used again.
+    /// For each definition, instances that nobody has any more, to be used again.
     free: Vec<Vec<u32>>,
+    /// Those that had an agent that died in the instant at hand.
+    retired: Vec<u32>,
 }
 
 /// More instances than the limit allows.
@@ -162,6 +169,7 @@ impl<'p> Guards<'p> {
             over_type: vec![Vec::new(); agents.of_type.len()],
             n_pairs: 0,
             free: vec![Vec::new(); definitions.len()],
+            retired: Vec::new(),
         };
         for (number, definition) in definitions.iter().enumerate() {
             if definition.near.is_empty() {
@@ -210,38 +218,116 @@ impl<'p> Guards<'p> {
         instance
     }
 
-    /// An instance, not active, of a definition whose pairs are listed when they are near.
-    pub fn list(&mut self, number: usize, roots: [u32; 2]) -> u32 {
+    /// An instance, not active, for agents that have come to be, or near.
+    pub fn list(&mut self, agents: &Agents<'_>, number: usize, roots: [u32; 2]) -> u32 {
         let Some(instance) = self.free[number].pop() else {
-            let definition = self.definitions[number].clone();
-            return self.add(number, &definition, roots);
+            let definitions = std::mem::take(&mut self.definitions);
+            let instance = self.add(number, &definitions[number], roots);
+            self.definitions = definitions;
+            self.leave_out(agents, instance);
+            return instance;
         };
         self.instances[instance as usize].roots = roots;
-        for root in roots {
-            self.of_agent[root as usize].push(instance);
+        for root in self.roots(instance) {
+            self.of_agent[root].push(instance);
+        }
+        if let Some(Trigger::On { .. }) = self.definition(instance).trigger() {
+            self.hearing[roots[0] as usize].push(instance);
         }
         self.n_pairs += 1;
         for index in self.atom_range(instance) {
             let state = &mut self.atoms[index];
             *state = AtomState { version: state.version, ..AtomState::new(instance) };
         }
+        for &ty in &self.definitions[number].quantified {
+            self.over_type[ty].push(instance);
+        }
+        self.leave_out(agents, instance);
         instance
     }
 
-    /// Takes an instance from its agents; whatever is in a queue for it is void.
-    pub fn unlist(&mut self, instance: u32) {
+    /// Takes an instance from its agents; whatever is in a queue for it is void. It is not used again before
+    /// [`Guards::free_retired`]: the instant at hand may still refer to it.
+    pub fn retire(&mut self, instance: u32) {
         let state = &mut self.instances[instance as usize];
         state.active = false;
         state.armed = false;
         state.arming += 1;
-        let (number, roots) = (state.definition as usize, state.roots);
         for index in self.atom_range(instance) {
             self.atoms[index].version += 1;
         }
-        for root in roots {
-            self.of_agent[root as usize].retain(|&other| other != instance);
+        for root in self.roots(instance) {
+            self.of_agent[root].retain(|&other| other != instance);
+            self.hearing[root].retain(|&other| other != instance);
         }
-        self.free[number].push(instance);
+        let number = self.instances[instance as usize].definition as usize;
+        for &ty in &self.definitions[number].quantified {
+            self.over_type[ty].retain(|&other| other != instance);
+        }
+        self.retired.push(instance);
+    }
+
+    /// Nothing refers any more to the instances that have been retired.
+    pub fn free_retired(&mut self) {
+        for instance in std::mem::take(&mut self.retired) {
+            self.free[self.instances[instance as usize].definition as usize].push(instance);
+        }
+    }
+
+    /// The instances of a link of an agent, in the order of its cases.
+    pub fn of_link(&self, agent: usize, link: usize) -> Vec<u32> {
+        let is_of_link = |&instance: &u32| matches!(self.definition(instance).origin, Origin::Link(update) if update.link == link);
+        let mut found: Vec<u32> = self.of_agent[agent].iter().copied().filter(is_of_link).collect();
+        found.sort_unstable_by_key(|&instance| self.instances[instance as usize].definition);
+        found
+    }
+
+    /// A link of an agent leads to somebody else: finds out which of its atoms nobody reads now. Returns those that somebody
+    /// reads who did not before.
+    pub fn spare(&mut self, agents: &Agents<'_>, agent: usize, link: usize) -> Vec<usize> {
+        let mut read = Vec::new();
+        for instance in self.of_link(agent, link) {
+            for index in self.atom_range(instance) {
+                let left_out = self.leaves_out(agents, index);
+                if left_out != self.atoms[index].left_out {
+                    let version = self.atoms[index].version + 1;
+                    self.atoms[index] = AtomState { version, left_out, ..AtomState::new(instance) };
+                    if !left_out {
+                        read.push(index);
+                    }
+                }
+            }
+        }
+        read
+    }
+
+    /// Whether an instance has agents.
+    pub fn is_listed(&self, instance: u32) -> bool {
+        let root = self.instances[instance as usize].roots[0] as usize;
+        self.of_agent[root].contains(&instance)
+    }
+
+    /// Whether a definition has an instance that nobody has any more.
+    pub fn has_free(&self, number: usize) -> bool {
+        !self.free[number].is_empty()
+    }
+
+    /// Makes room for an agent in a place that nobody has.
+    pub fn admit(&mut self, place: usize) {
+        if place == self.of_agent.len() {
+            self.of_agent.push(Vec::new());
+            self.hearing.push(Vec::new());
+        }
+    }
+
+    /// Finds out which atoms of an instance nobody reads.
+    fn leave_out(&mut self, agents: &Agents<'_>, instance: u32) {
+        if self.definition(instance).quantified.is_empty() {
+            return;
+        }
+        for index in self.atom_range(instance) {
+            self.atoms[index].left_out = self.leaves_out(agents, index);
+        }
     }
 
     /// The definition of an instance.
@@ -297,19 +383,25 @@ impl<'p> Guards<'p> {
         let atom = shapes.partition_point(|shape| shape.first <= offset) - 1;
         let mut rest = offset - shapes[atom].first;
         let agent = |&binder: &Range| {
-            let of_type = &agents.of_type[binder.ty];
-            let agent = of_type[rest % of_type.len()];
-            rest /= of_type.len();
+            let seats = &agents.seats[binder.ty];
+            let agent = seats[rest % seats.len()];
+            rest /= seats.len();
             (binder, agent)
         };
         (atom, shapes[atom].binders.iter().rev().map(agent).collect())
     }
 
-    /// Whether `other` leaves out an agent that an atom instance binds.
-    fn leaves_out(&self, agents: &Agents<'_>, index: usize) -> bool {
+    /// Whether `other` leaves out an agent that an atom instance binds, or nobody has its seat.
+    pub fn leaves_out(&self, agents: &Agents<'_>, index: usize) -> bool {
         let roots = self.roots(self.atoms[index].instance);
         let (_, bound) = self.bindings(agents, index);
-        bound.iter().any(|(binder, agent)| binder.other && roots.contains(agent))
+        let origin = self.definition(self.atoms[index].instance).origin;
+        // Whom a link leads to is not nearer than itself.
+        let led_to =
+            if let Origin::Link(update) = origin { agents.linked(roots[0], update.link) } else { ABSENT };
+        bound.iter().any(|&(binder, agent)| {
+            agent == ABSENT || agent == led_to || binder.other && roots.contains(&agent)
+        })
     }
 
     /// Whether an atom instance belongs to the filter of an aggregate.
@@ -330,7 +422,7 @@ impl<'p> Guards<'p> {
 /// The rank of the bindings in `slots` among all bindings.
 fn place(agents: &Agents<'_>, shape: &AtomShape, slots: &Slots) -> usize {
     shape.binders.iter().fold(0, |place, &Range { slot, ty, .. }| {
-        place * agents.of_type[ty].len() + agents.agents[slots[slot]].rank
+        place * agents.seats[ty].len() + agents.agents[slots[slot]].seat
     })
 }
 
@@ -363,7 +455,7 @@ fn size(agents: &Agents<'_>, definition: &Definition<'_>) -> u128 {
             let pairs = n * other;
             each * if pair.symmetric { pairs / 2 } else { pairs }
         }
-        Origin::Transition(_) | Origin::Gate(_) | Origin::Claim(_) => each * n,
+        Origin::Transition(_) | Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => each * n,
     }
 }
 
@@ -372,7 +464,9 @@ fn size(agents: &Agents<'_>, definition: &Definition<'_>) -> u128 {
 fn for_each_binding(agents: &Agents<'_>, definition: &Definition<'_>, visit: &mut dyn FnMut([u32; 2])) {
     for &first in &agents.of_type[definition.ty] {
         match definition.origin {
-            Origin::Transition(_) | Origin::Gate(_) | Origin::Claim(_) => visit([first as u32, u32::MAX]),
+            Origin::Transition(_) | Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => {
+                visit([first as u32, u32::MAX]);
+            }
             Origin::Pair(pair) => {
                 for &second in &agents.of_type[definition.frame.slots[1].ty()] {
                     if first != second && (!pair.symmetric || first < second) {

@@ -38,16 +38,17 @@ impl Engine<'_, '_> {
     /// The agents that a message is for, rising.
     fn receivers(&self, message: &Message) -> BTreeSet<usize> {
         let mut receivers = BTreeSet::new();
-        let ty = self.agents.agents[message.sender].ty;
         for definition in &self.guards.definitions {
             let Some(Trigger::On { events, from, .. }) = definition.trigger() else { continue };
-            if !events.contains(&(ty, message.event)) {
+            if !events.contains(&(message.who.ty, message.event)) {
                 continue;
             }
             match from {
                 Sender::Others => receivers.extend(&self.agents.of_type[definition.ty]),
                 // Whoever reaches the sender by links, or is it.
-                Sender::Slot(_) => receivers.extend(self.agents.readers(message.sender)),
+                Sender::Slot(_) => {
+                    receivers.extend(self.sender(message).into_iter().flat_map(|of| self.agents.readers(of)));
+                }
             }
         }
         let hears =
@@ -61,14 +62,20 @@ impl Engine<'_, '_> {
         let definition = self.guards.definition(instance);
         let Some(Trigger::On { events, from, .. }) = definition.trigger() else { return false };
         let own = self.guards.instances[instance as usize].roots[0] as usize;
+        let sender = self.sender(message);
         let is_listened_to = match *from {
-            Sender::Others => own != message.sender,
-            Sender::Slot(0) => own == message.sender,
+            Sender::Others => sender != Some(own),
+            Sender::Slot(0) => sender == Some(own),
             Sender::Slot(slot) => {
-                own != message.sender && self.guards.slots(&self.agents, instance)[slot] == message.sender
+                sender != Some(own) && sender == Some(self.guards.slots(&self.agents, instance)[slot])
             }
         };
-        is_listened_to && events.contains(&(self.agents.agents[message.sender].ty, message.event))
+        is_listened_to && events.contains(&(message.who.ty, message.event))
+    }
+
+    /// The place of who has sent a message, if it lives.
+    fn sender(&self, message: &Message) -> Option<usize> {
+        (self.agents.number(message.sender) == message.who.number).then_some(message.sender)
     }
 
     /// What the messages at their turns make fire in the next micro-step.

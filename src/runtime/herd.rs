@@ -1,8 +1,9 @@
 //! Herds: agents of one type and mode that no guard can concern for a while, as rows of numbers, advanced many at a time.
 //!
-//! Such an agent is *cold*: it runs ahead alone, and leaves no segments. A row holds where it is, where its last step
-//! began, and where the steps began that lead over the present; from there its way can be followed again, to the bit, by
-//! whoever asks where it was ([`Leaps::follow`]). In lanes, an agent that has come far enough makes room for the next.
+//! Such an agent is *cold*: it runs ahead alone, and leaves no segments but where a track is wanted of it ([`Tracks`]). A row
+//! holds where it is, where its last step began, and where the steps began that lead over the present; from there its way
+//! can be followed again, to the bit, by whoever asks where it was ([`Leaps::follow`]). In lanes, an agent that has come far
+//! enough makes room for the next.
 
 use std::cell::RefCell;
 
@@ -10,6 +11,7 @@ use crate::math::lanes::{Level, Work};
 use crate::math::{N_LANES, Numbers, Wide};
 use crate::runtime::leap::{Covering, LeapRows, Leaps, STATES_MAX};
 use crate::runtime::solve::segment::Segment;
+use crate::runtime::tracks::Tracks;
 
 /// Agents of one type and mode.
 #[derive(Clone, Debug)]
@@ -25,8 +27,10 @@ pub struct Herd<'p> {
     /// How far each has come, s; infinite for one that is not cold.
     clocks: Vec<f64>,
     rows: Vec<f64>,
+    /// The steps in this window of those that something may concern in it.
+    pub tracks: Tracks,
     /// Scratch.
-    alone: RefCell<LeapRows<f64>>,
+    alone: RefCell<(LeapRows<f64>, Segment)>,
 }
 
 /// Steps taken, and those that were refused.
@@ -39,7 +43,7 @@ pub struct Advanced {
 }
 
 /// An agent that takes so many steps in a window is left to who can choose another method.
-const STEPS_MAX: u32 = 1000;
+const STEPS_MAX: u32 = 200;
 /// Up to this many lanes are cheaper one by one.
 const FEW: usize = 3;
 
@@ -47,8 +51,10 @@ impl<'p> Herd<'p> {
     /// No agents yet; `inputs` are the auxiliary columns that the flow reads.
     pub fn new(leaps: Leaps<'p>, inputs: Vec<usize>) -> Self {
         let n = leaps.tape.n_states;
-        let alone = RefCell::new(LeapRows::new(&leaps));
-        Self { leaps, inputs, n, agents: Vec::new(), clocks: Vec::new(), rows: Vec::new(), alone }
+        let alone = RefCell::new((LeapRows::new(&leaps), Segment::default()));
+        let tracks = Tracks::new(n, leaps.order + 1);
+        let (agents, clocks, rows) = Default::default();
+        Self { leaps, inputs, n, agents, clocks, rows, tracks, alone }
     }
 
     /// A row: the states; time and states at the begin of the last step; those from which the way is followed; inputs.
@@ -71,6 +77,7 @@ impl<'p> Herd<'p> {
     /// Takes an agent out; the one that had the last place, if there is another, has its place now.
     pub fn remove(&mut self, place: usize) -> Option<usize> {
         let (last, width) = (self.agents.len() - 1, self.width());
+        self.tracks.remove(place, last);
         self.agents.swap_remove(place);
         self.clocks.swap_remove(place);
         self.rows.copy_within(last * width.., place * width);
@@ -109,14 +116,32 @@ impl<'p> Herd<'p> {
         (row[2 * self.n + 1], &row[2 * self.n + 2..3 * self.n + 2])
     }
 
-    /// Follows an agent from where its way is known until a step covers `until`: that step, and the states at its end; none if it is at a step's begin that
-    /// it can go no further.
-    pub fn follow(&self, place: usize, until: f64, x: &mut [f64], segment: &mut Segment) -> Option<Covering> {
+    /// The step of an agent that covers `t`, from its track or taken again from where its way is known, and the states at its
+    /// end; none if it is at a step's begin that it can go no further.
+    pub fn follow(&self, place: usize, t: f64, x: &mut [f64], segment: &mut Segment) -> Option<Covering> {
+        if let Some(step) = self.tracks.covering(place, t) {
+            let step = self.tracks.take(step, x, segment);
+            return Some(Covering { h: step.h, ratio: step.ratio });
+        }
         let (start, states) = self.known(place);
         x.copy_from_slice(states);
-        let mut rows = self.alone.borrow_mut();
+        let (rows, _) = &mut *self.alone.borrow_mut();
         self.fix(place, &mut rows.fixed);
-        self.leaps.follow((start, until), x, &mut rows, segment)
+        self.leaps.follow((start, t), x, rows, segment)
+    }
+
+    /// The states of an agent at `t`, from where its way is known on.
+    pub fn states_at(&self, place: usize, t: f64, x: &mut [f64]) {
+        let (clock, states) = self.now(place);
+        if clock == t {
+            return x.copy_from_slice(states);
+        }
+        let mut segment = std::mem::take(&mut self.alone.borrow_mut().1);
+        self.follow(place, t, x, &mut segment);
+        if segment.end != t {
+            segment.states(t, x);
+        }
+        self.alone.borrow_mut().1 = segment;
     }
 
     fn fix(&self, place: usize, fixed: &mut [f64]) {
@@ -128,11 +153,13 @@ impl<'p> Herd<'p> {
         self.leaps.tape.fix(input, fixed);
     }
 
-    /// Advances all that have not come as far as `until` until they have; what is known of their ways begins at `from` or
-    /// before it.
+    /// Advances all that have not come as far as `until` until they have, and makes the tracks that are wanted; what is known
+    /// of their ways begins at `from` or before it.
     pub fn advance(&mut self, from: f64, until: f64) -> Advanced {
-        let waiting: Vec<usize> =
+        let mut waiting: Vec<usize> =
             (0..self.clocks.len()).filter(|&place| self.clocks[place] < until).collect();
+        let tracked = self.tracks.wanted().iter().map(|&place| place as usize);
+        waiting.extend(tracked.filter(|&place| (until..f64::INFINITY).contains(&self.clocks[place])));
         let mut advanced = Advanced::default();
         let mut lanes = Lanes::new(&self.leaps);
         let mut waiting = waiting.into_iter();
@@ -142,39 +169,44 @@ impl<'p> Herd<'p> {
                     continue;
                 }
                 let Some(place) = waiting.next() else { break };
-                self.board(place, lane, from, &mut lanes);
+                self.board(place, lane, (from, until), &mut lanes);
             }
             if lanes.n_boarded <= FEW {
                 break;
             }
             Level::best().run(Step { leaps: &self.leaps, lanes: &mut lanes });
-            self.leave(until, &mut lanes, &mut advanced);
+            self.leave(&mut lanes, &mut advanced);
         }
         // The last few: one by one, with the same bits.
         let mut rows = LeapRows::new(&self.leaps);
         for lane in 0..N_LANES {
             if lanes.place[lane] != NOBODY {
-                self.alone(lanes.place[lane], lane, until, &lanes, &mut rows, &mut advanced);
+                self.alone(lane, &lanes, &mut rows, &mut advanced);
             }
         }
         advanced
     }
 
-    /// Puts an agent into a lane.
-    fn board(&mut self, place: usize, lane: usize, from: f64, lanes: &mut Lanes) {
+    /// Puts an agent into a lane: where it is or, if a track is wanted of it, where its way is known from.
+    fn board(&mut self, place: usize, lane: usize, (from, until): (f64, f64), lanes: &mut Lanes) {
         let (n, width) = (self.n, self.width());
         self.fix(place, &mut lanes.fixed);
         let row = &mut self.rows[place * width..][..width];
         if row[n] <= from {
             row.copy_within(n..2 * n + 1, 2 * n + 1);
         }
+        let is_tracked = self.tracks.wants(place);
+        let start = if is_tracked { row[2 * n + 1] } else { self.clocks[place] };
+        let first = if is_tracked { 2 * n + 2 } else { 0 };
         lanes.place[lane] = place;
+        lanes.is_tracked[lane] = is_tracked;
         lanes.taken[lane] = 0;
         lanes.n_boarded += 1;
-        lanes.t.0[lane] = self.clocks[place];
+        lanes.target[lane] = until.max(self.clocks[place]);
+        lanes.t.0[lane] = start;
         lanes.last_t.0[lane] = row[n];
         for i in 0..n {
-            lanes.x[i].0[lane] = row[i];
+            lanes.x[i].0[lane] = row[first + i];
             lanes.last_x[i].0[lane] = row[n + 1 + i];
         }
         for (wide, &value) in lanes.rows.fixed.iter_mut().zip(&lanes.fixed) {
@@ -183,21 +215,29 @@ impl<'p> Herd<'p> {
     }
 
     /// Takes those out of their lanes that have come far enough, or cannot go on.
-    fn leave(&mut self, until: f64, lanes: &mut Lanes, advanced: &mut Advanced) {
-        let n = self.n;
-        advanced.steps += lanes.n_boarded as u64;
+    fn leave(&mut self, lanes: &mut Lanes, advanced: &mut Advanced) {
         for lane in 0..N_LANES {
-            let good = lanes.good.0[lane] != 0.0;
-            lanes.taken[lane] += 1;
-            let goes_on = good && lanes.t.0[lane] < until;
-            if lanes.place[lane] == NOBODY || goes_on && lanes.taken[lane] < STEPS_MAX {
+            let place = lanes.place[lane];
+            if place == NOBODY {
                 continue;
             }
-            let place = lanes.place[lane];
-            let width = self.width();
-            let row = &mut self.rows[place * width..][..width];
+            let good = lanes.good.0[lane] != 0.0;
+            lanes.taken[lane] += 1;
+            if good {
+                // What a track takes again has been counted.
+                advanced.steps += u64::from(lanes.t.0[lane] > self.clocks[place]);
+                if lanes.is_tracked[lane] {
+                    self.track(lane, lanes);
+                }
+            }
+            let goes_on = good && lanes.t.0[lane] < lanes.target[lane];
+            if goes_on && lanes.taken[lane] < STEPS_MAX {
+                continue;
+            }
             // After a refused step it is where that began, and has come there by none that is known.
             let (t, x) = if good { (lanes.t, &lanes.x) } else { (lanes.last_t, &lanes.last_x) };
+            let (n, width) = (self.n, self.width());
+            let row = &mut self.rows[place * width..][..width];
             self.clocks[place] = t.0[lane];
             row[n] = lanes.last_t.0[lane];
             for i in 0..n {
@@ -207,23 +247,31 @@ impl<'p> Herd<'p> {
             if !good || goes_on {
                 advanced.refused.push(place);
             }
-            advanced.steps -= u64::from(!good);
             lanes.place[lane] = NOBODY;
             lanes.n_boarded -= 1;
         }
     }
 
+    /// Adds the last step of a lane to the track of its agent.
+    fn track(&mut self, lane: usize, lanes: &Lanes) {
+        let LeapRows { terms, errors, .. } = &lanes.rows;
+        let of_lane = |row: &[Wide], out: &mut [f64; STATES_MAX]| {
+            out.iter_mut().zip(row).for_each(|(out, wide)| *out = wide.0[lane]);
+        };
+        let [mut error, mut x, mut x_new] = [[0.0; STATES_MAX]; 3];
+        of_lane(errors, &mut error);
+        of_lane(&lanes.last_x, &mut x);
+        of_lane(&lanes.x, &mut x_new);
+        let n = self.n;
+        let ratio = self.leaps.accuracy.error_norm(&error[..n], &x[..n], &x_new[..n]);
+        let step = (lanes.last_t.0[lane], lanes.h.0[lane], lanes.t.0[lane]);
+        let terms = terms.iter().map(|wide| wide.0[lane]);
+        self.tracks.push(lanes.place[lane], step, ratio, x_new[..n].iter().copied(), terms);
+    }
+
     /// Advances one agent from where its lane has brought it.
-    fn alone(
-        &mut self,
-        place: usize,
-        lane: usize,
-        until: f64,
-        lanes: &Lanes,
-        rows: &mut LeapRows<f64>,
-        advanced: &mut Advanced,
-    ) {
-        let (n, width) = (self.n, self.width());
+    fn alone(&mut self, lane: usize, lanes: &Lanes, rows: &mut LeapRows<f64>, advanced: &mut Advanced) {
+        let (n, width, place) = (self.n, self.width(), lanes.place[lane]);
         self.fix(place, &mut rows.fixed);
         let mut t = lanes.t.0[lane];
         let mut last_t = lanes.last_t.0[lane];
@@ -232,7 +280,7 @@ impl<'p> Herd<'p> {
             (x[i], last_x[i]) = (lanes.x[i].0[lane], lanes.last_x[i].0[lane]);
         }
         for _ in 0..STEPS_MAX {
-            if t >= until {
+            if t >= lanes.target[lane] {
                 break;
             }
             let leap = self.leaps.leap(t, &x[..n], rows, &mut x_new[..n]);
@@ -240,11 +288,16 @@ impl<'p> Herd<'p> {
                 advanced.refused.push(place);
                 break;
             }
-            advanced.steps += 1;
+            advanced.steps += u64::from(leap.end > self.clocks[place]);
+            if lanes.is_tracked[lane] {
+                let ratio = self.leaps.accuracy.error_norm(&rows.errors, &x[..n], &x_new[..n]);
+                let (x_end, terms) = (x_new[..n].iter().copied(), rows.terms.iter().copied());
+                self.tracks.push(place, (t, leap.h, leap.end), ratio, x_end, terms);
+            }
             (last_t, last_x) = (t, x);
             (t, x) = (leap.end, x_new);
         }
-        if t < until && advanced.refused.last() != Some(&place) {
+        if t < lanes.target[lane] && advanced.refused.last() != Some(&place) {
             advanced.refused.push(place);
         }
         let row = &mut self.rows[place * width..][..width];
@@ -261,10 +314,14 @@ const NOBODY: usize = usize::MAX;
 /// The agents that are advanced at once.
 struct Lanes {
     place: [usize; N_LANES],
+    is_tracked: [bool; N_LANES],
+    /// How far each is to come, s.
+    target: [f64; N_LANES],
     /// Steps in this window.
     taken: [u32; N_LANES],
     n_boarded: usize,
     t: Wide,
+    h: Wide,
     x: Vec<Wide>,
     last_t: Wide,
     last_x: Vec<Wide>,
@@ -280,9 +337,12 @@ impl Lanes {
         let (zero, n) = (Wide::all(0.0), leaps.tape.n_states);
         Self {
             place: [NOBODY; N_LANES],
+            is_tracked: [false; N_LANES],
+            target: [0.0; N_LANES],
             taken: [0; N_LANES],
             n_boarded: 0,
             t: zero,
+            h: zero,
             x: vec![zero; n],
             last_t: zero,
             last_x: vec![zero; n],
@@ -303,9 +363,10 @@ struct Step<'a, 'p> {
 impl Work for Step<'_, '_> {
     #[inline(always)]
     fn work(self) {
-        let Lanes { t, x, last_t, last_x, x_new, good, rows, .. } = self.lanes;
+        let Lanes { t, h, x, last_t, last_x, x_new, good, rows, .. } = self.lanes;
         let leap = self.leaps.leap(*t, x, rows, x_new);
         *last_t = *t;
+        *h = leap.h;
         *t = leap.end;
         *good = leap.good;
         std::mem::swap(x, last_x);

@@ -1,29 +1,44 @@
 //! Who has to be looked at in a window of time: agents whose guards could change in it are *hot*, and take their steps in
 //! the plain form; all others are cold.
 
-use crate::runtime::engine::Engine;
+use crate::runtime::engine::{Due, Engine};
 use crate::runtime::leap::Covering;
 use crate::runtime::population::ABSENT;
 
 /// How often a comparison that is awake does not try to sleep.
 const SKIP: u16 = 64;
 
+/// How many agents are looked at in a window.
+#[derive(Clone, Copy, Debug)]
+pub struct Outlook {
+    /// That take their steps in turn, and could be cold if no guard concerned them.
+    pub n_hot: usize,
+    /// Whose steps are kept.
+    pub n_tracked: usize,
+}
+
 impl Engine<'_, '_> {
-    /// Divides the agents for the window from the present to `until`, and advances the cold ones. Returns how many are hot
-    /// that would be cold if no guard concerned them.
-    pub fn open_window(&mut self, until: f64) -> usize {
+    /// Divides the agents for the window from the present to `until`, and advances the cold ones.
+    pub fn open_window(&mut self, until: f64) -> Outlook {
         let from = self.present.time;
-        let mut needed = self.look_ahead(until);
-        needed.sort_unstable();
-        needed.dedup();
+        self.agents.cold.clear_tracks();
+        let doubtful = self.look_ahead(until);
+        let changing = self.changing();
         let hot = std::mem::take(&mut self.hot);
         for agent in hot {
-            if needed.binary_search(&agent).is_ok() || !self.freeze(agent) {
+            if changing.binary_search(&agent).is_ok() || !self.freeze(agent) {
                 self.hot.push(agent);
             }
         }
-        for &agent in &needed {
+        for &agent in &changing {
             self.thaw(agent);
+        }
+        let mut doubted = Vec::new();
+        for due in &doubtful {
+            self.add_read(due.number as usize, &mut doubted);
+        }
+        for &agent in &doubted {
+            self.agents.cold.want_track(agent);
         }
         let mut refused = Vec::new();
         let steps = self.agents.cold.advance(from, until, &mut |agent| refused.push(agent));
@@ -31,34 +46,47 @@ impl Engine<'_, '_> {
         for agent in refused {
             self.thaw(agent);
         }
+        let mut needed = Vec::new();
+        for due in doubtful {
+            let index = due.number as usize;
+            if !self.foresee(index, until) {
+                // Nor will it sleep by the boxes of its agents' groups.
+                self.guards.atoms[index].skip = SKIP;
+                self.add_read(index, &mut needed);
+                self.queues.uncertified.push(due);
+            }
+        }
+        for agent in needed {
+            self.thaw(agent);
+        }
         self.has_thawed = false;
         let rows = self.hot.iter().map(|&agent| &self.agents.agents[agent]);
-        rows.filter(|row| self.agents.cold.may_be(row.ty, row.mode)).count()
+        let n_hot = rows.filter(|row| self.agents.cold.may_be(row.ty, row.mode)).count();
+        Outlook { n_hot, n_tracked: self.agents.cold.n_tracked() }
     }
 
-    /// Has comparisons sleep beyond `until`; returns the agents of those that do not, and of those that will change.
-    fn look_ahead(&mut self, until: f64) -> Vec<usize> {
-        let mut needed = Vec::new();
-        let mut awake = Vec::new();
+    /// Has comparisons sleep beyond `until`; returns those that do not.
+    fn look_ahead(&mut self, until: f64) -> Vec<Due> {
+        let mut doubtful = Vec::new();
         while let Some(due) = self.queues.uncertified.peek().copied().filter(|due| due.time < until) {
             self.queues.uncertified.pop();
             let index = due.number as usize;
-            if self.guards.atoms[index].version != due.version {
-                continue;
-            }
-            if !self.sleep_beyond(index, until) {
-                // Nor will it by the boxes of its agents' groups.
-                self.guards.atoms[index].skip = SKIP;
-                self.add_read(index, &mut needed);
-                awake.push(due);
+            if self.guards.atoms[index].version == due.version && !self.sleep_beyond(index, until) {
+                doubtful.push(due);
             }
         }
-        self.queues.uncertified.extend(awake);
-        let flips: Vec<usize> = self.queues.flips.iter().map(|due| due.number as usize).collect();
-        for index in flips {
-            self.add_read(index, &mut needed);
+        doubtful
+    }
+
+    /// The agents that comparisons read which will change, rising.
+    fn changing(&self) -> Vec<usize> {
+        let mut agents = Vec::new();
+        for due in &self.queues.flips {
+            self.add_read(due.number as usize, &mut agents);
         }
-        needed
+        agents.sort_unstable();
+        agents.dedup();
+        agents
     }
 
     /// Adds the agents that a comparison reads.
@@ -78,6 +106,7 @@ impl Engine<'_, '_> {
         let group = &mut self.groups.groups[row.group];
         if self.stepper.is_stiff(agent, row.mode)
             || group.members.len() != 1
+            || !self.agents.followers(agent).is_empty()
             || !self.agents.cold.may_be(row.ty, row.mode)
             || group.clock == f64::INFINITY
         {

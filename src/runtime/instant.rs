@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use rustc_hash::FxHashMap;
 
 use crate::base::Span;
-use crate::codegen::program::{ClaimKind, ClaimSystem, Target, Trigger};
-use crate::runtime::act::{Effect, Written, claims};
+use crate::codegen::program::{ClaimKind, ClaimSystem, Trigger};
+use crate::runtime::act::{Claimed, Effect, Written, claims};
 use crate::runtime::arm::Rule;
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason, contested};
@@ -51,7 +51,7 @@ impl Engine<'_, '_> {
         self.repetitions.instant += 1;
         self.notes.iter_mut().for_each(|notes| notes.begin());
         let mut micro = 0;
-        let mut touched_agents: BTreeSet<usize> = BTreeSet::new();
+        let mut touched_agents: BTreeSet<(usize, usize)> = BTreeSet::new();
         let mut concerned: Vec<u32> = candidates.iter().map(|candidate| candidate.instance).collect();
         loop {
             self.deliver();
@@ -69,14 +69,18 @@ impl Engine<'_, '_> {
             }
             let (chosen, passed) = self.choose(&candidates)?;
             let written = self.fire(&chosen, micro, &mut touched_agents)?;
+            touched_agents.extend(written.born.iter().map(|&agent| (self.agents.number(agent), agent)));
             let fired: Vec<u32> = chosen.iter().map(|ranked| ranked.candidate.instance).collect();
             if self.notes.is_some() {
                 self.explain_writes(&written, &fired);
             }
-            let woken = self.wake(&written)?;
+            let mut woken = self.wake(&written)?;
             for &instance in &fired {
                 self.settle_fired(instance, &written);
             }
+            woken.extend(self.refresh_links(&woken)?);
+            woken.sort_unstable();
+            woken.dedup();
             for &instance in fired.iter().chain(&woken) {
                 self.rearm(instance);
             }
@@ -95,6 +99,7 @@ impl Engine<'_, '_> {
         for &instance in &concerned {
             self.calm(instance);
         }
+        self.end_lives();
         self.recorder.after_instant(
             &self.agents,
             &mut self.present,
@@ -125,15 +130,12 @@ impl Engine<'_, '_> {
         }
         ranked.sort_by(|a, b| {
             let by_priority = b.priority.total_cmp(&a.priority);
-            let by_place = (a.depth, a.declaration, &a.slots[..], a.candidate).cmp(&(
-                b.depth,
-                b.declaration,
-                &b.slots[..],
-                b.candidate,
-            ));
-            by_priority.then(by_place)
+            let by_place = (a.depth, a.declaration).cmp(&(b.depth, b.declaration));
+            let number = |&agent: &usize| self.agents.number(agent);
+            let by_number = a.slots.iter().map(number).cmp(b.slots.iter().map(number));
+            by_priority.then(by_place).then(by_number).then(a.candidate.cmp(&b.candidate))
         });
-        let mut taken: FxHashMap<(usize, Target), u32> = FxHashMap::default();
+        let mut taken: FxHashMap<(usize, Claimed), u32> = FxHashMap::default();
         let (mut chosen, mut passed) = (Vec::new(), Vec::new());
         for ranked in ranked {
             let claims = claims(self, ranked.candidate.instance, &ranked.slots);
@@ -169,7 +171,9 @@ impl Engine<'_, '_> {
         let (transition, depth) = match self.guards.definition(candidate.instance).origin {
             Origin::Transition(transition) => (transition, transition.depth),
             Origin::Pair(pair) => (&pair.transition, 0),
-            Origin::Gate(_) | Origin::Claim(_) => unreachable!("gates and claims are no candidates"),
+            Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => {
+                unreachable!("only transitions are candidates")
+            }
         };
         let mut priority = 0.0;
         if let Some(function) = transition.priority {
@@ -200,7 +204,7 @@ impl Engine<'_, '_> {
         &mut self,
         chosen: &[Ranked],
         micro: usize,
-        touched: &mut BTreeSet<usize>,
+        touched: &mut BTreeSet<(usize, usize)>,
     ) -> Result<Written, Failure> {
         let mut effects: Vec<Effect> = Vec::with_capacity(chosen.len());
         for ranked in chosen {
@@ -218,9 +222,10 @@ impl Engine<'_, '_> {
                 .writes
                 .iter()
                 .map(|write| write.agent)
-                .chain(effect.moves.iter().map(|change| change.agent));
+                .chain(effect.moves.iter().map(|change| change.agent))
+                .chain(effect.doomed.iter().map(|doomed| doomed.agent));
             for agent in agents {
-                if touched.insert(agent) {
+                if touched.insert((self.agents.number(agent), agent)) {
                     self.recorder.before_write(&self.agents, &mut self.present, agent, self.observer)?;
                 }
             }
@@ -228,10 +233,10 @@ impl Engine<'_, '_> {
         for (ranked, effect) in chosen.iter().zip(&effects) {
             self.log(ranked, effect, micro)?;
         }
-        self.carry_out(&effects)
+        self.carry_out(effects)
     }
 
-    fn count_firing(&mut self, instance: u32) -> Result<(), Failure> {
+    pub fn count_firing(&mut self, instance: u32) -> Result<(), Failure> {
         let definition = self.guards.instances[instance as usize].definition as usize;
         self.firings[definition] += 1;
         let trigger = self.guards.definition(instance).trigger();
@@ -271,11 +276,12 @@ impl Engine<'_, '_> {
         let pair = matches!(self.guards.definition(instance).origin, Origin::Pair(_));
         let time = self.present.time;
         let ty = self.agents.agents[ranked.slots[0]].ty;
-        let agent = ranked.slots[0];
-        let sender = if ranked.candidate.by == By::Message { self.mail.sender_at(agent) } else { None };
+        let sender =
+            if ranked.candidate.by == By::Message { self.mail.sender_at(ranked.slots[0]) } else { None };
+        let agent = self.agents.who(ranked.slots[0]);
         let mut event = Event { time, micro, transition: label, agent, other: sender, modes: None };
         if effect.moves.is_empty() {
-            event.other = if pair { Some(ranked.slots[1]) } else { sender };
+            event.other = if pair { Some(self.agents.who(ranked.slots[1])) } else { sender };
             self.n_events += 1;
             self.events_of_type[ty] += 1;
             self.observer.event(&event)?;
@@ -283,9 +289,10 @@ impl Engine<'_, '_> {
         }
         for change in &effect.moves {
             let modes = &self.program.types[self.agents.agents[change.agent].ty].modes;
-            event.agent = change.agent;
+            event.agent = self.agents.who(change.agent);
             if pair {
-                event.other = Some(ranked.slots[usize::from(change.agent == ranked.slots[0])]);
+                let other = ranked.slots.get(usize::from(change.agent == ranked.slots[0]));
+                event.other = other.map(|&other| self.agents.who(other));
             }
             event.modes = Some((&modes[change.from].path, &modes[change.to].path));
             self.n_events += 1;
@@ -297,7 +304,7 @@ impl Engine<'_, '_> {
 
     /// A guard that has just fired looks at its boundary by the rates along the new flow (rule 3): where it had its root,
     /// and where a reset may have put it there.
-    fn settle_fired(&mut self, instance: u32, written: &Written) {
+    pub fn settle_fired(&mut self, instance: u32, written: &Written) {
         if !self.guards.instances[instance as usize].active {
             return;
         }
@@ -387,6 +394,7 @@ impl Engine<'_, '_> {
         let compared = self.told(instance);
         let mode = self.agents.mode(agent).path.clone();
         let (span, message) = (claim.span, claim.message.clone());
+        let agent = self.agents.who(agent);
         self.false_asserts.push(FalseAssert { span, message, time, agent, mode, compared, count: 1 });
     }
 }

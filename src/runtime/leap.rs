@@ -30,10 +30,10 @@ pub struct LeapRows<T> {
     coefficients: Vec<T>,
     rates: Vec<T>,
     /// The terms of each state's series at the end of the step.
-    terms: Vec<T>,
+    pub terms: Vec<T>,
     ends: Vec<T>,
     /// The error of each state in the last step.
-    errors: Vec<T>,
+    pub errors: Vec<T>,
 }
 
 impl<T: Numbers> LeapRows<T> {

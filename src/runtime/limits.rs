@@ -9,6 +9,8 @@ pub struct Limits {
     pub zeno_events: u32,
     /// `max_steps`: accepted and rejected steps of all agents.
     pub steps_max: u64,
+    /// `max_agents`: agents at a time, counting those that die in an instant until its end.
+    pub agents_max: usize,
     /// `max_guards`: guard instances over pairs (all pairs are listed).
     pub guards_max: usize,
     /// `max_pieces`: how many pieces of time one search for a root of one guard looks at. A step may take several searches.
@@ -21,6 +23,7 @@ impl Default for Limits {
             microsteps_max: 1000,
             zeno_events: 100,
             steps_max: 10_000_000_000,
+            agents_max: 10_000_000,
             guards_max: 50_000_000,
             pieces_max: 10_000,
         }

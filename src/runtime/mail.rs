@@ -6,11 +6,15 @@ use std::rc::Rc;
 
 use smallvec::SmallVec;
 
+use crate::runtime::observe::Who;
+
 /// What an `emit` has sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Message {
-    /// Who.
+    /// The place of who has sent it.
     pub sender: usize,
+    /// Who that is: somebody else may have the place by now.
+    pub who: Who,
     /// The number of the event in the sender's type.
     pub event: usize,
     /// What it carries.
@@ -122,12 +126,17 @@ impl Mail {
     /// What has been sent since this was last asked, in the order of the senders.
     pub fn collect(&mut self) -> Vec<Message> {
         let mut sent = std::mem::take(&mut self.sent);
-        sent.sort_by_key(|message| message.sender);
+        sent.sort_by_key(|message| message.who.number);
         sent
     }
 
+    /// An agent is no more: it has nothing to hear.
+    pub fn forget(&mut self, agent: usize) {
+        self.inboxes.remove(&agent);
+    }
+
     /// The sender of the message that is at its turn at an agent.
-    pub fn sender_at(&self, agent: usize) -> Option<usize> {
-        self.inboxes.get(&agent).and_then(|inbox| inbox.messages.front()).map(|message| message.sender)
+    pub fn sender_at(&self, agent: usize) -> Option<Who> {
+        self.inboxes.get(&agent).and_then(|inbox| inbox.messages.front()).map(|message| message.who)
     }
 }

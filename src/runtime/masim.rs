@@ -77,7 +77,8 @@ impl Engine<'_, '_> {
     /// Rule 6: groups, locks, entry actions, arming, micro-steps at t = 0.
     pub fn begin(&mut self) -> Result<(), Failure> {
         self.present.go(0.0);
-        let all: Vec<usize> = (0..self.agents.len()).collect();
+        let all = self.agents.living();
+        self.set_links(&all);
         self.set_locks(all.iter().copied());
         let mut written = Written::default();
         for group in self.groups.divide(&mut self.agents, &all, 0.0, &|_| None) {
@@ -86,11 +87,15 @@ impl Engine<'_, '_> {
         let entries: Vec<(usize, &[usize])> =
             all.iter().map(|&agent| (agent, self.agents.mode(agent).active.as_slice())).collect();
         self.run_entries(&entries, &mut written)?;
+        self.turn_over(&mut written)?;
+        self.regroup(&mut written);
+        self.end_lives();
         self.set_locks(written.restarted.iter().copied());
         self.recorder.begin(&self.agents, &mut self.present, self.observer)?;
         self.begin_lists()?;
         self.arm_all()?;
         let instances = 0..self.guards.instances.len() as u32;
+        self.refresh_links(&instances.clone().collect::<Vec<u32>>())?;
         let enabled = instances.clone().filter(|&instance| self.enabled(instance));
         let candidates = enabled.map(|instance| Candidate { instance, by: By::Guard }).collect();
         self.instant(candidates)?;
@@ -108,7 +113,7 @@ impl Engine<'_, '_> {
             return Err(Reason::NeverEnds { time: self.present.time }.into());
         }
         let end = self.time_end;
-        for agent in 0..self.agents.len() {
+        for agent in self.agents.living() {
             self.recorder.step(&self.agents, &mut self.present, agent, end, self.observer)?;
         }
         self.present.go(end);
@@ -120,6 +125,7 @@ impl Engine<'_, '_> {
         let progress = Progress {
             time: self.cover().min(self.time_end),
             until: self.time_end,
+            agents: self.agents.len() as u64,
             events: self.n_events,
             steps: self.stepper.counts.steps,
         };
@@ -130,10 +136,15 @@ impl Engine<'_, '_> {
     /// Advances the group that lags most.
     pub fn advance_laggard(&mut self, cover: f64) -> Result<(), Failure> {
         let Some(due) = self.queues.clocks.pop() else { return Ok(()) };
-        let number = due.number as usize;
-        if self.groups.groups[number].clock != due.time {
+        let lagging = due.number as usize;
+        if self.groups.groups[lagging].clock != due.time {
             return Ok(());
         }
+        let number = self.first_to_move(lagging);
+        if number != lagging {
+            self.queue_clock(lagging);
+        }
+        self.run_leaders_ahead(number);
         if self.recorder.wants_steps() {
             for k in 0..self.groups.groups[number].members.len() {
                 let agent = self.groups.groups[number].members[k];

@@ -13,7 +13,7 @@
 //! | 1 state | states flow, discretes stay, lets follow, links refer | `population` |
 //! | 2 arming | a guard fires at the first instant it is armed and true; firing disarms, being false arms | `arm`, `truth` |
 //! | 3 the instant | the infimum of the times at which the condition is true; on its boundary the rates decide | `solve::roots`, `branches`, `arm` |
-//! | 4 micro-steps | one instant is a sequence of micro-steps, each on the state before it | `instant`, `gather` |
+//! | 4 micro-steps | one instant is a sequence of micro-steps, each on the state before it | `instant`, `gather`, `route` |
 //! | 5 who may write | agents write themselves, interactions their participants | `act`, `guards` |
 //! | 6 t = 0 | locks, groups, entry actions, arming, micro-steps, claims | `masim` |
 //! | 7 after a reset | only what a write concerns restarts | `act` |
@@ -21,7 +21,7 @@
 //! | 9 events | what is emitted is heard in the next micro-step, one message an agent, in the order of the senders | `mail`, `hear` |
 //! | 11 time | `after` and `every` count from entry, as products; hazards are integrated with the flow | `arm`, `gather`, `hazard` |
 //! | 12 end | `until`, `stop`, errors; the state of all at that time | `masim`, `repetition` |
-//! | 13 coupling | who reads another's states in its flow steps with it | `groups` |
+//! | 13 coupling | who read each other's states in their flows step together, a follower after its leader | `groups`, `leaders` |
 //! | 14 reads across agents | a write wakes the guards that read it, and no others | `arm` |
 //! | 15 kinks | a step never spans a surface at which a branch of the flow changes | `advance` |
 //! | 16 output | recording changes nothing | `record` |
@@ -41,8 +41,10 @@ pub mod limits;
 pub mod paper;
 pub mod observe;
 mod leap;
+mod tracks;
 mod herd;
 mod cold;
+mod ahead;
 mod route;
 mod population;
 mod present;
@@ -60,6 +62,7 @@ mod comparisons;
 mod notes;
 mod flow;
 mod failure;
+mod fate;
 mod advance;
 mod stiffness;
 mod repetition;
@@ -67,16 +70,21 @@ mod mail;
 mod record;
 mod neighbours;
 mod engine;
+mod leaders;
 mod point;
 mod asked;
+mod seats;
+mod lives;
 mod act;
 mod send;
 mod arm;
 mod hazard;
 mod near_pairs;
 mod sleep;
+mod foresee;
 mod hot;
 mod hear;
+mod links;
 mod instant;
 mod certify;
 mod explain;
@@ -96,6 +104,7 @@ use clocks::Clocks;
 pub use clocks::takes as published_take;
 use engine::Engine;
 use failure::Failure;
+use groups::Coupling;
 pub use limits::Limits;
 use observe::{End, Observer, Outcome, Stats};
 pub use paper::{Algorithm, Form};
@@ -121,7 +130,8 @@ pub fn simulate_by(
     interrupt: &AtomicBool,
     observer: &mut dyn Observer,
 ) -> Outcome {
-    let mut engine = match Engine::new(program, algorithm.form(), limits, interrupt, observer) {
+    let forms = (algorithm.form(), coupling(algorithm));
+    let mut engine = match Engine::new(program, forms, limits, interrupt, observer) {
         Ok(engine) => engine,
         Err(failure) => return stillborn(failure),
     };
@@ -147,6 +157,15 @@ pub fn simulate_by(
     };
     let end = last_words(&mut clocks.engine, end);
     clocks.outcome(end)
+}
+
+/// Who shares a clock.
+fn coupling(algorithm: Algorithm) -> Coupling {
+    match algorithm {
+        Algorithm::Masim(_) => Coupling::Mutual,
+        Algorithm::Masim2004(_) => Coupling::Connected,
+        Algorithm::Sasim2004(_) => Coupling::Together,
+    }
 }
 
 /// Tells the observer the last state of every agent.

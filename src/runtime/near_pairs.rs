@@ -13,7 +13,8 @@ use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::grid::Grid;
 use crate::runtime::guards::Origin;
-use crate::runtime::neighbours::{Field, Listed};
+use crate::runtime::neighbours::{Field, Listed, NOWHERE};
+use crate::runtime::population::ABSENT;
 
 impl Engine<'_, '_> {
     /// Makes the fields of the interactions that have a range; nothing is listed yet.
@@ -26,9 +27,8 @@ impl Engine<'_, '_> {
             }
             let types = [definition.ty, definition.frame.slots[1].ty()];
             let alike = types[0] == types[1] && definition.near.iter().all(|near| near.own == near.other);
-            let grid = Grid::default();
-            let (symmetric, listed) = (pair.symmetric, Vec::new());
-            fields.push(Field { definition: number, types, alike, symmetric, grid, listed });
+            let (symmetric, seats, grid, listed) = (pair.symmetric, [0; 2], Grid::default(), Vec::new());
+            fields.push(Field { definition: number, types, alike, symmetric, seats, grid, listed });
         }
         self.neighbours.fields = fields;
     }
@@ -50,21 +50,25 @@ impl Engine<'_, '_> {
             }
         }
         (self.neighbours.until, self.neighbours.fields) = (until, fields);
+        self.guards.free_retired();
         done.map(|()| new)
     }
 
     fn list_field(&mut self, field: &mut Field, until: f64, new: &mut Vec<u32>) -> Result<(), Failure> {
         let near = self.guards.definitions[field.definition].near;
         let mut boxes = Vec::new();
+        field.seats = field.seats_of(&self.agents);
         for side in field.sides() {
-            for rank in 0..self.agents.of_type[field.types[side]].len() {
-                let agent = self.agents.of_type[field.types[side]][rank];
-                boxes.extend(self.reach(agent, near, side, until));
+            for seat in 0..field.seats[side] {
+                match self.agents.seats[field.types[side]][seat] {
+                    ABSENT => boxes.extend(near.iter().map(|_| NOWHERE)),
+                    agent => boxes.extend(self.reach(agent, near, side, until)),
+                }
             }
         }
         field.grid = Grid::new(near.len(), boxes);
         let mut wanted: Vec<[u32; 2]> = Vec::new();
-        field.grid.for_each_pair(&mut |a, b| wanted.extend(field.pairs(&self.agents.of_type, a, b)));
+        field.grid.for_each_pair(&mut |a, b| wanted.extend(field.pairs(&self.agents, a, b)));
         wanted.sort_unstable();
         let before = std::mem::take(&mut field.listed);
         let mut before = before.into_iter().peekable();
@@ -91,29 +95,31 @@ impl Engine<'_, '_> {
     /// Forgets a pair that is not near any more, but for one whose guard has not been found false since it fired.
     fn let_go(&mut self, old: Listed, listed: &mut Vec<Listed>) {
         if self.guards.instances[old.instance as usize].armed {
-            self.guards.unlist(old.instance);
+            self.guards.retire(old.instance);
         } else {
             listed.push(old);
         }
     }
 
     fn new_pair(&mut self, definition: usize, agents: [u32; 2]) -> Result<u32, Failure> {
-        let limit = self.limits.guards_max;
-        if self.guards.instances.len() >= limit {
-            let needed = self.guards.instances.len() as u128 + 1;
-            return Err(Reason::GuardLimit { needed, limit }.into());
-        }
-        let instance = self.guards.list(definition, agents);
+        self.mind_guards(self.guards.instances.len() as u128 + 1)?;
+        let instance = self.guards.list(&self.agents, definition, agents);
         self.repetitions.forget(instance);
         Ok(instance)
+    }
+
+    /// Fails if there would be more guard instances than the limit allows.
+    pub fn mind_guards(&self, needed: u128) -> Result<(), Failure> {
+        let limit = self.limits.guards_max;
+        if needed > limit as u128 { Err(Reason::GuardLimit { needed, limit }.into()) } else { Ok(()) }
     }
 
     /// Where an agent can get to up to `until`, in the states that are compared of it, with half of the range around.
     fn reach(&mut self, agent: usize, near: &[Near], side: usize, until: f64) -> SmallVec<[Interval; 4]> {
         let mut states = SmallVec::new();
-        let span = (self.present.time, until);
+        let now = self.present.time;
         let (agents, groups) = (&self.agents, &self.groups.groups);
-        self.reaches.states(agents, groups, &mut self.enclosures, agent, span, &mut states);
+        self.reaches.states(agents, groups, &mut self.enclosures, agent, (now, now, until), &mut states);
         let around = |near: &Near| {
             let bound = states[if side == 0 { near.own } else { near.other }];
             let half = 0.5 * near.within * (1.0 + 1e-12);
@@ -122,21 +128,34 @@ impl Engine<'_, '_> {
         near.iter().map(around).collect()
     }
 
-    /// Lists anew, at the present instant, those of some agents that may leave the boxes by which they are listed.
-    pub fn relist(&mut self, agents: &[usize]) -> Result<(), Failure> {
+    /// Lists anew, at the present instant, those of some agents that may leave the boxes by which they are listed, and those
+    /// who have come to be; returns instances of these, which are armed.
+    pub fn relist(&mut self, agents: &[usize], born: &[usize]) -> Result<Vec<u32>, Failure> {
         let mut fields = std::mem::take(&mut self.neighbours.fields);
         let mut done = Ok(());
+        let mut armed = Vec::new();
         for field in &mut fields {
-            done = self.relist_field(field, agents);
+            done = self.relist_field(field, agents, born, &mut armed);
             if done.is_err() {
                 break;
             }
         }
         self.neighbours.fields = fields;
-        done
+        done.map(|()| armed)
     }
 
-    fn relist_field(&mut self, field: &mut Field, agents: &[usize]) -> Result<(), Failure> {
+    fn relist_field(
+        &mut self,
+        field: &mut Field,
+        agents: &[usize],
+        born: &[usize],
+        armed: &mut Vec<u32>,
+    ) -> Result<(), Failure> {
+        if field.seats != field.seats_of(&self.agents) {
+            let mut new = Vec::new();
+            self.list_field(field, self.neighbours.until, &mut new)?;
+            return new.into_iter().try_for_each(|instance| self.introduce(instance, born, armed));
+        }
         let near = self.guards.definitions[field.definition].near;
         let mut moved = Vec::new();
         for &agent in agents {
@@ -152,14 +171,14 @@ impl Engine<'_, '_> {
         }
         for &number in &moved {
             for other in field.grid.around(number) {
-                let pairs = field.pairs(&self.agents.of_type, number.min(other), number.max(other));
+                let pairs = field.pairs(&self.agents, number.min(other), number.max(other));
                 for agents in pairs {
                     if self.has_pair(field.definition, agents) {
                         continue;
                     }
                     let instance = self.new_pair(field.definition, agents)?;
                     field.listed.push(Listed { agents, instance });
-                    self.meet(instance);
+                    self.introduce(instance, born, armed)?;
                 }
             }
         }
@@ -167,6 +186,17 @@ impl Engine<'_, '_> {
             field.listed.sort_unstable();
         }
         Ok(())
+    }
+
+    /// Arms an instance of a pair that is new in a list: because one of the two is new, or because they have come near.
+    fn introduce(&mut self, instance: u32, born: &[usize], armed: &mut Vec<u32>) -> Result<(), Failure> {
+        let roots = self.guards.roots(instance);
+        if !roots.iter().any(|root| born.contains(root)) {
+            self.meet(instance);
+            return Ok(());
+        }
+        armed.push(instance);
+        self.arm(instance, Rule::Fresh)
     }
 
     fn has_pair(&self, definition: usize, agents: [u32; 2]) -> bool {

@@ -6,8 +6,12 @@
 
 use smallvec::SmallVec;
 
+use crate::math::Interval;
 use crate::runtime::grid::Grid;
 use crate::runtime::population::Agents;
+
+/// Where nobody is: it overlaps nothing.
+pub const NOWHERE: Interval = Interval { lo: f64::INFINITY, hi: f64::NEG_INFINITY };
 
 /// The pairs of all interactions that have a range.
 #[derive(Default)]
@@ -30,7 +34,9 @@ pub struct Field {
     pub alike: bool,
     /// Whether a pair counts once, the lower number first.
     pub symmetric: bool,
-    /// The boxes of the first type, then, if they are not alike, those of the second, each by rank.
+    /// How many seats either type had when the list was made.
+    pub seats: [usize; 2],
+    /// The boxes of the first type, then, if they are not alike, those of the second, each by seat.
     pub grid: Grid,
     /// Pairs that have instances, with those.
     pub listed: Vec<Listed>,
@@ -54,19 +60,25 @@ impl Field {
     /// The number of an agent's box on one side; none if it is of another type.
     pub fn number(&self, agents: &Agents<'_>, agent: usize, side: usize) -> Option<u32> {
         let agent = &agents.agents[agent];
-        let before = if side == 0 { 0 } else { agents.of_type[self.types[0]].len() };
-        (agent.ty == self.types[side]).then(|| (before + agent.rank) as u32)
+        let before = if side == 0 { 0 } else { self.seats[0] };
+        (agent.ty == self.types[side]).then(|| (before + agent.seat) as u32)
+    }
+
+    /// How many seats either type has now.
+    pub fn seats_of(&self, agents: &Agents<'_>) -> [usize; 2] {
+        self.types.map(|ty| agents.seats[ty].len())
     }
 
     /// The pairs of agents that two boxes, a < b, stand for.
-    pub fn pairs(&self, of_type: &[Vec<usize>], a: u32, b: u32) -> SmallVec<[[u32; 2]; 2]> {
-        let first = &of_type[self.types[0]];
+    pub fn pairs(&self, agents: &Agents<'_>, a: u32, b: u32) -> SmallVec<[[u32; 2]; 2]> {
+        let first = &agents.seats[self.types[0]];
+        let in_order = |a: u32, b: u32| agents.number(a as usize) < agents.number(b as usize);
         if self.alike {
             let (a, b) = (first[a as usize] as u32, first[b as usize] as u32);
-            return if self.symmetric {
-                SmallVec::from_slice(&[[a, b]])
-            } else {
-                SmallVec::from_slice(&[[a, b], [b, a]])
+            return match self.symmetric {
+                true if in_order(a, b) => SmallVec::from_slice(&[[a, b]]),
+                true => SmallVec::from_slice(&[[b, a]]),
+                false => SmallVec::from_slice(&[[a, b], [b, a]]),
             };
         }
         // Boxes of the two sides only, and not of an agent with itself.
@@ -74,7 +86,25 @@ impl Field {
         if a >= first.len() || b < first.len() {
             return SmallVec::new();
         }
-        let (a, b) = (first[a] as u32, of_type[self.types[1]][b - first.len()] as u32);
-        if a == b || self.symmetric && a > b { SmallVec::new() } else { SmallVec::from_slice(&[[a, b]]) }
+        let (a, b) = (first[a] as u32, agents.seats[self.types[1]][b - first.len()] as u32);
+        let is_one = a != b && (!self.symmetric || in_order(a, b));
+        if is_one { SmallVec::from_slice(&[[a, b]]) } else { SmallVec::new() }
+    }
+}
+
+impl Neighbours {
+    /// Forgets the box and the pairs of an agent that dies.
+    pub fn forget(&mut self, agents: &Agents<'_>, agent: usize) {
+        for field in &mut self.fields {
+            for side in field.sides() {
+                let number = field.number(agents, agent, side);
+                if let Some(number) = number.filter(|&number| (number as usize) < field.grid.len()) {
+                    let nowhere: SmallVec<[Interval; 4]> =
+                        field.grid.get(number).iter().map(|_| NOWHERE).collect();
+                    field.grid.change(number, &nowhere);
+                }
+            }
+            field.listed.retain(|listed| !listed.agents.contains(&(agent as u32)));
+        }
     }
 }

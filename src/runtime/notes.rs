@@ -14,6 +14,8 @@ pub struct Notes {
     pub before: FxHashMap<usize, (Vec<f64>, Vec<f64>)>,
     /// The agents that it took into another mode.
     pub moved: Vec<usize>,
+    /// The agents that it made.
+    pub born: Vec<usize>,
     /// The labels of the transitions that fired in it.
     pub writers: Vec<String>,
     /// What could not be decided and has not been told yet.
@@ -24,14 +26,15 @@ impl Notes {
     /// For a run that has not begun.
     pub fn new(agents: &Agents<'_>) -> Self {
         let aside = Present::new(agents);
-        let (before, moved) = (FxHashMap::default(), Vec::new());
-        Self { aside, before, moved, writers: Vec::new(), undecided: Vec::new() }
+        let (before, moved, born) = (FxHashMap::default(), Vec::new(), Vec::new());
+        Self { aside, before, moved, born, writers: Vec::new(), undecided: Vec::new() }
     }
 
     /// An instant begins: nothing has been written in it.
     pub fn begin(&mut self) {
         self.before.clear();
         self.moved.clear();
+        self.born.clear();
         self.writers.clear();
     }
 }

@@ -5,6 +5,16 @@ use std::io;
 use crate::base::{Diagnostic, Span};
 pub use crate::codegen::trace::Compared;
 
+/// An agent as outputs know it: one that has been there at t = 0 has a name of its own, the others are called by type and
+/// number, `Car#17`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Who {
+    /// Its number; no other agent of the run has it.
+    pub number: usize,
+    /// The number of its type.
+    pub ty: usize,
+}
+
 /// Told of a run as it proceeds, in the order of time. An `Err` ends the run (the disk is full, say).
 pub trait Observer {
     /// A transition has fired.
@@ -45,9 +55,9 @@ pub struct Explanation<'a> {
     /// `Car.left`, `Bump.pair`.
     pub transition: &'a str,
     /// The agent; in an interaction the first participant.
-    pub agent: usize,
+    pub agent: Who,
     /// The other participant of an interaction.
-    pub other: Option<usize>,
+    pub other: Option<Who>,
     /// Where the transition stands.
     pub span: Span,
     /// What made it fire.
@@ -76,7 +86,7 @@ pub enum Cause {
     /// A message.
     Message {
         /// From whom.
-        sender: usize,
+        sender: Who,
     },
     /// What these transitions wrote in the micro-step before made its guard true.
     Write {
@@ -104,9 +114,9 @@ pub struct Undecided {
     /// The label of the transition; none for an invariant or an assert.
     pub transition: Option<String>,
     /// The agent; in an interaction the first participant.
-    pub agent: usize,
+    pub agent: Who,
     /// The other participant of an interaction.
-    pub other: Option<usize>,
+    pub other: Option<Who>,
     /// Where the transition or the claim stands.
     pub span: Span,
     /// The comparison at both ends of the stretch.
@@ -137,9 +147,9 @@ pub struct Event<'a> {
     /// `Car.left`, `Bump.pair`.
     pub transition: &'a str,
     /// The agent (in an interaction: the first participant, or the one whose mode changes).
-    pub agent: usize,
+    pub agent: Who,
     /// The other participant of an interaction; by an `on` the sender of the message.
-    pub other: Option<usize>,
+    pub other: Option<Who>,
     /// The mode it leaves and the one it enters, as paths; none where no mode changes.
     pub modes: Option<(&'a str, &'a str)>,
 }
@@ -151,8 +161,8 @@ pub struct Row<'a> {
     pub time: f64,
     /// Number of micro-steps executed at this instant before the row.
     pub micro: usize,
-    /// The agent's number.
-    pub agent: usize,
+    /// The agent.
+    pub agent: Who,
     /// The path of its mode; empty for an agent without modes.
     pub mode: &'a str,
     /// One cell a column of the record.
@@ -168,8 +178,8 @@ pub enum Cell {
     Number(f64),
     /// True or false.
     Bool(bool),
-    /// An agent by its number, or `none`.
-    Agent(Option<usize>),
+    /// An agent, or `none`.
+    Agent(Option<Who>),
 }
 
 /// The state of an agent at the end of a run.
@@ -177,8 +187,8 @@ pub enum Cell {
 pub struct Last<'a> {
     /// s.
     pub time: f64,
-    /// The agent's number.
-    pub agent: usize,
+    /// The agent.
+    pub agent: Who,
     /// The number of its type.
     pub ty: usize,
     /// The path of its mode.
@@ -196,6 +206,8 @@ pub struct Progress {
     pub time: f64,
     /// The end of the run, s; infinite if none is set.
     pub until: f64,
+    /// How many agents there are.
+    pub agents: u64,
     /// Events so far.
     pub events: u64,
     /// Accepted steps so far.
@@ -227,7 +239,7 @@ pub enum End {
         /// The text given with it.
         reason: Option<String>,
         /// Which agent.
-        agent: usize,
+        agent: Who,
         /// The label of the transition or the path of the mode.
         by: String,
     },
@@ -249,7 +261,7 @@ pub struct FalseAssert {
     /// When it was first false, s.
     pub time: f64,
     /// For which agent.
-    pub agent: usize,
+    pub agent: Who,
     /// The path of the mode it was in.
     pub mode: String,
     /// What it compared.
@@ -277,6 +289,10 @@ pub struct Stats {
     pub guard_evaluations: u64,
     /// Evaluations of guard expressions over an interval.
     pub guard_ranges: u64,
+    /// Places that agents have had: as many as were alive at a time, for they are used again.
+    pub places: u64,
+    /// Places that guards and their comparisons have had.
+    pub guard_places: u64,
     /// Guard instances over pairs (or larger tuples) that exist.
     pub pairs_listed: u64,
     /// Roots that could be neither excluded nor isolated.
@@ -317,6 +333,10 @@ pub struct TypeStats {
     pub name: String,
     /// How many agents there are at the end.
     pub agents: u64,
+    /// How many have been created during the run.
+    pub created: u64,
+    /// How many have been destroyed.
+    pub destroyed: u64,
     /// Their accepted steps.
     pub steps: u64,
     /// Events of their transitions (interactions count for the first participant's type).

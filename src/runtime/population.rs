@@ -1,14 +1,23 @@
 //! The agents of a run: their rows, their links, and which agents read which.
 //!
+//! An agent has a *place*, by which everything in the runtime refers to it, and which another has after its death; and a
+//! *number*, which nobody else ever has: it orders agents, and names those that are created. Among the agents of its type
+//! it has a *seat*, by which comparisons below quantifiers are found.
+//!
 //! An agent's `states` are those at its clock (the end of its last step or the instant of its last event); its
 //! `segment` holds the way there. Rows at the present instant are made on demand in [`crate::runtime::present`].
 
 use smallvec::SmallVec;
 
 use crate::codegen::program::{Flow, Frame, Layout, ModeSystem, Program, Slot};
+use crate::runtime::ahead::Ahead;
 use crate::runtime::cold::Cold;
-use crate::runtime::route::begin_histories;
+use crate::runtime::observe::Who;
+use crate::runtime::route::{begin_histories, first};
 use crate::runtime::solve::segment::Segment;
+
+/// How many seats a type gets that has had none.
+const SEATS_LEAST: usize = 8;
 
 /// No agent: what a slot holds whose link is `none`.
 pub const ABSENT: usize = usize::MAX;
@@ -16,14 +25,23 @@ pub const ABSENT: usize = usize::MAX;
 /// The agents in the slots of a frame; [`ABSENT`] where there is none.
 pub type Slots = SmallVec<[usize; 4]>;
 
+/// Nobody: what has a place and no number yet, or none any more.
+const NOBODY: usize = usize::MAX;
+
 /// One agent.
 #[derive(Clone, Debug)]
 pub struct Agent {
+    /// Its number, rising in the order of births; that of a dead one is void.
+    pub number: usize,
     /// Its type.
     pub ty: usize,
-    /// Its place among the agents of its type.
-    pub rank: usize,
-    /// The leaf mode it is in.
+    /// Its seat among the agents of its type.
+    pub seat: usize,
+    /// What its random numbers belong to, if it was created: [`crate::math::draw::Key::word`] of its creator.
+    pub word: Option<u64>,
+    /// How many agents it has created.
+    pub created: u64,
+    /// The configuration it is in: a leaf mode, or one of each region.
     pub mode: usize,
     /// Its group.
     pub group: usize,
@@ -35,18 +53,32 @@ pub struct Agent {
     pub draws: Vec<u64>,
     /// Its trajectory over its last step.
     pub segment: Segment,
+    /// Steps beyond that, for those whose flows read it.
+    pub ahead: Ahead,
 }
 
 /// All agents with their links.
 pub struct Agents<'p> {
     /// The program they follow.
     pub program: &'p Program,
-    /// By number.
+    /// By place.
     pub agents: Vec<Agent>,
     /// Who runs ahead.
     pub cold: Cold<'p>,
-    /// The numbers of the agents of each type, rising.
+    /// The places of the living agents of each type, in the order of their numbers.
     pub of_type: Vec<Vec<usize>>,
+    /// For each type, who has which seat; [`ABSENT`] if nobody has it.
+    pub seats: Vec<Vec<usize>>,
+    /// How many agents there have been.
+    pub n_numbers: usize,
+    /// For each type, how many have been created and destroyed.
+    pub turnover: Vec<[u64; 2]>,
+    /// Seats of each type that nobody has.
+    free_seats: Vec<Vec<usize>>,
+    /// Places that nobody has.
+    free: Vec<usize>,
+    /// Places of those who died in the instant at hand.
+    retired: Vec<usize>,
     /// For each agent, those that have a link to it.
     linked_from: Vec<Vec<usize>>,
     /// The longest chain of links that any frame follows.
@@ -55,6 +87,8 @@ pub struct Agents<'p> {
     absent: Vec<f64>,
     /// For each type and mode, the auxiliary columns that the flow depends on, by itself or through its kinks.
     flow_inputs: Vec<Vec<Vec<(usize, usize)>>>,
+    /// For each type, whether any flow reads states of another agent of it.
+    is_followed: Vec<bool>,
 }
 
 impl<'p> Agents<'p> {
@@ -65,7 +99,7 @@ impl<'p> Agents<'p> {
         for (number, instance) in program.population.agents.iter().enumerate() {
             let ty = instance.ty.index();
             let system = &program.types[ty];
-            let mode = instance.mode.index();
+            let mode = first(system, instance.mode.index());
             let mut aux = vec![0.0; system.layout.n_aux()];
             aux[Layout::NUMBER] = number as f64;
             aux[Layout::MODE] = mode as f64;
@@ -77,14 +111,28 @@ impl<'p> Agents<'p> {
                 *column = value;
             }
             begin_histories(system, mode, &mut aux);
-            let rank = of_type[ty].len();
+            let seat = of_type[ty].len();
             of_type[ty].push(number);
             let mut states = instance.states.clone();
             // What is left of hazards is drawn when their transitions are armed.
             states.resize(system.layout.n_states, 1.0);
-            let segment = Segment::at(0.0, &states);
+            let (segment, ahead) = (Segment::at(0.0, &states), Ahead::default());
             let draws = vec![0; system.streams.len()];
-            agents.push(Agent { ty, rank, mode, group: 0, states, aux, draws, segment });
+            let (word, created, group) = (None, 0, 0);
+            agents.push(Agent {
+                number,
+                ty,
+                seat,
+                word,
+                created,
+                mode,
+                group,
+                states,
+                aux,
+                draws,
+                segment,
+                ahead,
+            });
         }
         let mut linked_from = vec![Vec::new(); agents.len()];
         for (number, instance) in program.population.agents.iter().enumerate() {
@@ -94,11 +142,18 @@ impl<'p> Agents<'p> {
         }
         Self {
             program,
+            seats: of_type.clone(),
+            n_numbers: agents.len(),
+            turnover: vec![[0; 2]; program.types.len()],
+            free_seats: vec![Vec::new(); program.types.len()],
+            free: Vec::new(),
+            retired: Vec::new(),
             agents,
             of_type,
             linked_from,
             chain_max: longest_chain(program),
             flow_inputs: flow_inputs(program),
+            is_followed: is_followed(program),
             cold: Cold::default(),
             absent: vec![f64::NAN; row_width(program)],
         }
@@ -108,26 +163,89 @@ impl<'p> Agents<'p> {
     pub fn states_at(&self, number: usize, t: f64, states: &mut [f64]) {
         let agent = &self.agents[number];
         if self.cold.is_cold(number) && self.cold.knows(number, t) {
-            let mut segment = Segment::default();
-            self.cold.follow(number, t, states, &mut segment);
-            if segment.end != t {
-                segment.states(t, states);
-            }
-            return;
+            return self.cold.states_at(number, t, states);
         }
         if agent.segment.end == t {
-            states.copy_from_slice(&agent.states);
-        } else {
-            agent.segment.states(t, states);
+            return states.copy_from_slice(&agent.states);
+        }
+        let beyond = if agent.segment.end < t { agent.ahead.covering(t) } else { None };
+        beyond.map_or(&agent.segment, |way| &way.segment).states(t, states);
+    }
+
+    /// The rates of an agent that is not cold at `t`, by its dense output.
+    pub fn rates_at(&self, number: usize, t: f64, rates: &mut [f64]) {
+        let agent = &self.agents[number];
+        let beyond = if agent.segment.end < t { agent.ahead.covering(t) } else { None };
+        let segment = beyond.map_or(&agent.segment, |way| &way.segment);
+        let (mut x, mut ddx) = (rates.to_vec(), rates.to_vec());
+        segment.jet(t, &mut x, rates, &mut ddx);
+    }
+
+    /// Up to when the way of an agent that is not cold is known, s.
+    pub fn known_until(&self, agent: usize) -> f64 {
+        let agent = &self.agents[agent];
+        agent.ahead.last().map_or(agent.segment.end, |way| way.segment.end)
+    }
+
+    /// Where the step of an agent ends that leads on from `t`, s.
+    pub fn way_until(&self, agent: usize, t: f64) -> f64 {
+        let agent = &self.agents[agent];
+        let ways = std::iter::once(agent.segment.end).chain(agent.ahead.ends());
+        ways.into_iter().find(|&end| t < end).unwrap_or(t)
+    }
+
+    /// Which of the steps ahead of an agent leads on from `t`; none if it is its last step.
+    pub fn way_from(&self, agent: usize, t: f64) -> Option<usize> {
+        let agent = &self.agents[agent];
+        if t < agent.segment.end { None } else { agent.ahead.leading_from(t) }
+    }
+
+    /// Exchanges the last segment of an agent for that of a step ahead.
+    pub fn exchange(&mut self, agent: usize, way: Option<usize>) {
+        let Agent { segment, ahead, .. } = &mut self.agents[agent];
+        if let Some(way) = way.and_then(|way| ahead.get(way)) {
+            std::mem::swap(segment, &mut way.segment);
         }
     }
 
-    /// How far an agent has come, and its states there; `clock` is that of its group.
-    pub fn at_clock(&self, agent: usize, clock: f64) -> (f64, SmallVec<[f64; 8]>) {
-        if self.cold.is_cold(agent) {
-            return self.cold.now(agent);
+    /// The agents whose states the active flow of an agent reads, without itself.
+    pub fn couples(&self, agent: usize) -> Vec<usize> {
+        let flow = self.flow(agent);
+        if flow.couples.is_empty() {
+            return Vec::new();
         }
-        (clock, self.agents[agent].states.as_slice().into())
+        let slots = self.slots(&flow.frame, &[agent]);
+        flow.couples
+            .iter()
+            .map(|&slot| slots[slot])
+            .filter(|&other| other != ABSENT && other != agent)
+            .collect()
+    }
+
+    /// The agents whose active flows read states of an agent, without itself.
+    pub fn followers(&self, agent: usize) -> Vec<usize> {
+        if !self.is_followed[self.agents[agent].ty] {
+            return Vec::new();
+        }
+        let mut followers = self.readers(agent);
+        followers.retain(|&reader| reader != agent && self.couples(reader).contains(&agent));
+        followers
+    }
+
+    /// A time not after `now`, the present, from which on an agent is not known to have been written, and its states there;
+    /// `clock` is that of its group. Where it has come to since may yet be cut away.
+    pub fn anchor(&self, agent: usize, clock: f64, now: f64) -> (f64, SmallVec<[f64; 8]>) {
+        let row = &self.agents[agent];
+        if self.cold.is_cold(agent) {
+            if self.cold.known_from(agent) <= now {
+                return self.cold.known(agent);
+            }
+        } else if clock <= now {
+            return (clock, row.states.as_slice().into());
+        }
+        let mut states = SmallVec::from_elem(0.0, row.states.len());
+        row.segment.states(row.segment.start, &mut states);
+        (row.segment.start, states)
     }
 
     /// What is read of an agent that is absent.
@@ -135,9 +253,120 @@ impl<'p> Agents<'p> {
         &self.absent
     }
 
-    /// How many there are.
+    /// How many places there are, those of dead agents included.
     pub fn len(&self) -> usize {
         self.agents.len()
+    }
+
+    /// How many are alive.
+    pub fn n_living(&self) -> usize {
+        self.of_type.iter().map(Vec::len).sum()
+    }
+
+    /// Whether somebody who is alive has this place.
+    pub fn is_alive(&self, agent: usize) -> bool {
+        self.agents.get(agent).is_some_and(|agent| agent.number != NOBODY)
+    }
+
+    /// The places of all who are alive, in the order of their numbers.
+    pub fn living(&self) -> Vec<usize> {
+        let mut all: Vec<usize> = self.of_type.iter().flatten().copied().collect();
+        all.sort_unstable_by_key(|&agent| self.agents[agent].number);
+        all
+    }
+
+    /// The number of who has a place; greater than all for [`ABSENT`].
+    pub fn number(&self, agent: usize) -> usize {
+        if agent == ABSENT { usize::MAX } else { self.agents[agent].number }
+    }
+
+    /// An agent as outputs know it.
+    pub fn who(&self, agent: usize) -> Who {
+        let agent = &self.agents[agent];
+        Who { number: agent.number, ty: agent.ty }
+    }
+
+    /// Takes a new agent in, with the next number and no links; returns its place. Whether the type has a free seat has been
+    /// seen to: [`Agents::has_seat`].
+    pub fn admit(&mut self, mut agent: Agent) -> usize {
+        let ty = agent.ty;
+        agent.number = self.n_numbers;
+        self.n_numbers += 1;
+        self.turnover[ty][0] += 1;
+        let place = self.free.pop().unwrap_or(self.agents.len());
+        agent.seat = self.free_seats[ty].pop().expect("a seat has been made");
+        agent.aux[Layout::NUMBER] = place as f64;
+        self.seats[ty][agent.seat] = place;
+        self.of_type[ty].push(place);
+        if place == self.agents.len() {
+            self.agents.push(agent);
+            self.linked_from.push(Vec::new());
+        } else {
+            self.agents[place] = agent;
+        }
+        place
+    }
+
+    /// Whether a type has a seat that nobody has.
+    pub fn has_seat(&self, ty: usize) -> bool {
+        !self.free_seats[ty].is_empty()
+    }
+
+    /// Gives a type more seats; they are behind those that there are.
+    pub fn add_seats(&mut self, ty: usize) {
+        let before = self.seats[ty].len();
+        let after = (2 * before).max(SEATS_LEAST);
+        self.seats[ty].resize(after, ABSENT);
+        self.free_seats[ty].extend((before..after).rev());
+    }
+
+    /// Takes a dead agent out of all sets, and its links from those whom they led to. Its place is free after the instant.
+    pub fn dismiss(&mut self, place: usize) {
+        let layout = self.layout(place);
+        for link in 0..layout.n_links {
+            self.link(place, link, ABSENT);
+        }
+        let Agent { ty, seat, number, .. } = self.agents[place];
+        let rank = self.of_type[ty].partition_point(|&other| self.agents[other].number < number);
+        self.of_type[ty].remove(rank);
+        self.seats[ty][seat] = ABSENT;
+        self.free_seats[ty].push(seat);
+        self.turnover[ty][1] += 1;
+        self.agents[place].number = NOBODY;
+        self.retired.push(place);
+    }
+
+    /// The instant is over: nothing refers to those who died in it.
+    pub fn free_retired(&mut self) {
+        self.free.append(&mut self.retired);
+    }
+
+    /// How many places cannot be had, by the living or by those who died in the instant at hand.
+    pub fn n_occupied(&self) -> usize {
+        self.n_living() + self.retired.len()
+    }
+
+    /// Leads a link of an agent to another, or to [`ABSENT`].
+    pub fn link(&mut self, from: usize, link: usize, to: usize) {
+        let column = self.layout(from).link(link);
+        let before = self.linked(from, link);
+        if before == to {
+            return;
+        }
+        if before != ABSENT {
+            let readers = &mut self.linked_from[before];
+            let found = readers.iter().position(|&reader| reader == from);
+            readers.swap_remove(found.expect("whom a link leads to knows where it comes from"));
+        }
+        if to != ABSENT {
+            self.linked_from[to].push(from);
+        }
+        self.agents[from].aux[column] = if to == ABSENT { -1.0 } else { to as f64 };
+    }
+
+    /// Who has a link to an agent; once for each link.
+    pub fn linked_from(&self, agent: usize) -> &[usize] {
+        &self.linked_from[agent]
     }
 
     /// The mode an agent is in.
@@ -148,7 +377,7 @@ impl<'p> Agents<'p> {
 
     /// The equations an agent follows.
     pub fn flow(&self, agent: usize) -> &'p Flow {
-        self.mode(agent).flow.as_ref().expect("an agent is in a leaf mode, and leaves have flows")
+        self.mode(agent).flow.as_ref().expect("an agent is in a configuration, and these have flows")
     }
 
     /// The auxiliary columns, by slot, that the active flow of an agent depends on.
@@ -184,7 +413,8 @@ impl<'p> Agents<'p> {
         }
     }
 
-    fn linked(&self, from: usize, link: usize) -> usize {
+    /// Whom a link of an agent leads to.
+    pub fn linked(&self, from: usize, link: usize) -> usize {
         if from == ABSENT {
             return ABSENT;
         }
@@ -210,9 +440,21 @@ impl<'p> Agents<'p> {
         readers
     }
 
-    /// The agent's name: `fast`, `cars[3]`.
+    /// The agent's name: `fast`, `cars[3]`, `Car#17`.
     pub fn name(&self, agent: usize) -> String {
-        self.program.population.agent_name(agent)
+        let Agent { number, ty, .. } = self.agents[agent];
+        if number < self.program.population.agents.len() {
+            return self.program.population.agent_name(number);
+        }
+        format!("{}#{number}", self.program.types[ty].name)
+    }
+
+    /// What the random numbers of an agent belong to: its name, if it was there at t = 0.
+    pub fn draw_path(&self, agent: usize) -> String {
+        match self.agents[agent].word {
+            Some(word) => format!("#{word:016x}"),
+            None => self.name(agent),
+        }
     }
 }
 
@@ -235,6 +477,17 @@ fn flow_inputs(program: &Program) -> Vec<Vec<Vec<(usize, usize)>>> {
     program.types.iter().map(|ty| ty.modes.iter().map(of_mode).collect()).collect()
 }
 
+/// For each type, whether any flow reads states of another agent of it.
+fn is_followed(program: &Program) -> Vec<bool> {
+    let mut is_followed = vec![false; program.types.len()];
+    for mode in program.types.iter().flat_map(|ty| &ty.modes) {
+        for flow in mode.flow.iter() {
+            flow.couples.iter().for_each(|&slot| is_followed[flow.frame.slots[slot].ty()] = true);
+        }
+    }
+    is_followed
+}
+
 /// The longest chain of links in any frame of the program.
 fn longest_chain(program: &Program) -> usize {
     let mut longest = 0;
@@ -253,6 +506,7 @@ fn longest_chain(program: &Program) -> usize {
             mode.claims.iter().for_each(|claim| visit(&claim.frame));
         }
         ty.transitions.iter().for_each(|transition| visit(&transition.frame));
+        ty.links.iter().flat_map(|link| &link.updates).for_each(|update| visit(&update.frame));
     }
     let pairs = program.interactions.iter().flat_map(|interaction| &interaction.transitions);
     pairs.for_each(|pair| visit(&pair.transition.frame));

@@ -58,6 +58,14 @@ impl Present {
         }
     }
 
+    /// Makes room for an agent in a place that nobody has.
+    pub fn admit(&mut self, place: usize) {
+        if place == self.rows.len() {
+            self.rows.push(Rows::default());
+        }
+        self.rows[place] = Rows::default();
+    }
+
     /// Moves to another time.
     pub fn go(&mut self, time: f64) {
         if time != self.time {

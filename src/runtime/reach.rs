@@ -2,7 +2,9 @@
 //!
 //! Rates that are bounded whatever the states are (a speed times a cosine, a saturated input) bound the way of a state
 //! for as long as the agent follows the same flow with the same parameters; a state whose rate is bounded by those has
-//! bounds too. These are kept until the agent's group changes its version. Other states have a box by Picard's operator
+//! bounds too. These are kept until the agent's group changes its version. The way begins at an anchor that is not beyond
+//! the present ([`Agents::anchor`]): what an agent has run ahead may be cut away by an event, and a bound that rests on where
+//! it would have come to would not hold then. Other states have a box by Picard's operator
 //! ([`Enclosures`]), or none.
 
 use smallvec::SmallVec;
@@ -20,6 +22,8 @@ use crate::runtime::solve::control::Accuracy;
 struct Kept {
     version: u32,
     first: u32,
+    /// For how many states there is room.
+    room: u32,
     /// From here on they are valid, s.
     since: f64,
     /// Whether each rate is bounded whatever the states are.
@@ -53,8 +57,9 @@ impl Reaches {
     pub fn new(agents: &Agents<'_>, accuracy: Accuracy, time_end: f64) -> Self {
         let mut first = 0;
         let kept = agents.agents.iter().map(|agent| {
-            let kept = Kept { version: u32::MAX, first, since: f64::INFINITY, pure: false };
-            first += agent.states.len() as u32;
+            let room = agent.states.len() as u32;
+            let kept = Kept { version: u32::MAX, first, room, since: f64::INFINITY, pure: false };
+            first += room;
             kept
         });
         let kept: Vec<Kept> = kept.collect();
@@ -72,16 +77,29 @@ impl Reaches {
         }
     }
 
+    /// Makes room for an agent with so many states in a place that nobody has.
+    pub fn admit(&mut self, place: usize, n_states: usize) {
+        if place == self.kept.len() {
+            self.kept.push(Kept { version: u32::MAX, first: 0, room: 0, since: f64::INFINITY, pure: false });
+        }
+        let kept = &mut self.kept[place];
+        (kept.version, kept.since, kept.pure) = (u32::MAX, f64::INFINITY, false);
+        if (kept.room as usize) < n_states {
+            (kept.first, kept.room) = (self.rates.len() as u32, n_states as u32);
+            self.rates.resize(self.rates.len() + n_states, Interval::WHOLE);
+        }
+    }
+
     /// The box of an agent's states over [from, to], one place of `out` each; WHOLE where there is no bound.
     ///
-    /// All of [from, to] lies at or after the present; where the agent's clock is does not matter.
+    /// All of [from, to] lies at or after `now`, the present; where the agent's clock is does not matter.
     pub fn states(
         &mut self,
         agents: &Agents<'_>,
         groups: &[Group],
         enclosures: &mut Enclosures,
         agent: usize,
-        (from, to): (f64, f64),
+        (now, from, to): (f64, f64, f64),
         out: &mut SmallVec<[Interval; 8]>,
     ) {
         out.clear();
@@ -92,10 +110,10 @@ impl Reaches {
         let number = agents.agents[agent].group;
         let group = &groups[number];
         let first = self.kept[agent].first as usize;
-        let (clock, states) = agents.at_clock(agent, group.clock);
-        if group.members.len() == 1 && to <= self.time_end {
-            self.refresh(agents, group, agent, from);
-            let span = Interval { lo: from - clock, hi: to - clock };
+        if is_alone(group) && to <= self.time_end {
+            let (t, states) = agents.anchor(agent, group.clock, now);
+            self.refresh(agents, group, agent, (t, &states));
+            let span = Interval { lo: from - t, hi: to - t };
             for (&x, &rate) in states.iter().zip(&self.rates[first..first + n]) {
                 out.push(if rate.is_whole() { rate } else { self.padded(x, span.mul(rate)) });
             }
@@ -113,31 +131,30 @@ impl Reaches {
         });
     }
 
-    /// Bounds of the rate of one state of an agent from `from` on, whatever its states are; none if there are none.
+    /// Bounds of the rate of one state of an agent from its anchor on, whatever its states are; none if there are none.
     pub fn rate(
         &mut self,
         agents: &Agents<'_>,
         groups: &[Group],
         agent: usize,
         state: usize,
-        from: f64,
+        anchor: (f64, &[f64]),
     ) -> Option<Interval> {
         let group = &groups[agents.agents[agent].group];
-        if group.members.len() != 1 {
+        if !is_alone(group) {
             return None;
         }
-        self.refresh(agents, group, agent, from);
+        self.refresh(agents, group, agent, anchor);
         let rate = self.rates[self.kept[agent].first as usize + state];
         (!rate.is_whole()).then_some(rate)
     }
 
-    /// Bounds the rates of an agent that is alone, if what is known of them is not valid any more.
-    fn refresh(&mut self, agents: &Agents<'_>, group: &Group, agent: usize, from: f64) {
-        let Kept { version, since, first, .. } = self.kept[agent];
-        if version != group.version || from < since {
-            let (clock, states) = agents.at_clock(agent, group.clock);
-            let pure = self.bound(agents, agent, clock, &states, from);
-            self.kept[agent] = Kept { version: group.version, first, since: from, pure };
+    /// Bounds the rates of an agent that is alone from its anchor on, if what is known of them is not valid there.
+    fn refresh(&mut self, agents: &Agents<'_>, group: &Group, agent: usize, anchor: (f64, &[f64])) {
+        let Kept { version, since, .. } = self.kept[agent];
+        if version != group.version || anchor.0 < since {
+            let pure = self.bound(agents, agent, anchor);
+            self.kept[agent] = Kept { version: group.version, since: anchor.0, pure, ..self.kept[agent] };
         }
     }
 
@@ -146,9 +163,9 @@ impl Reaches {
         self.kept[agent].pure
     }
 
-    /// Bounds the rates of an agent that is alone from `since` on, as far as they are bounded whatever its states are. True
+    /// Bounds the rates of an agent that is alone from its anchor on, as far as they are bounded whatever its states are. True
     /// if all are, and by nothing that is known of the states.
-    fn bound(&mut self, agents: &Agents<'_>, number: usize, clock: f64, states: &[f64], since: f64) -> bool {
+    fn bound(&mut self, agents: &Agents<'_>, number: usize, (since, states): (f64, &[f64])) -> bool {
         let first = self.kept[number].first as usize;
         let agent = &agents.agents[number];
         let n = agent.states.len();
@@ -156,7 +173,7 @@ impl Reaches {
         let slots = agents.slots(&flow.frame, &[number]);
         let kernel = agents.program.kernel(flow.rates);
         let time = Interval { lo: since, hi: self.time_end };
-        let span = Interval { lo: since - clock, hi: self.time_end - clock };
+        let span = Interval { lo: 0.0, hi: self.time_end - since };
         let mut states_box: SmallVec<[Interval; 8]> = SmallVec::from_elem(ANY, n);
         self.rates[first..first + n].fill(Interval::WHOLE);
         let mut n_bounded = 0;
@@ -198,4 +215,9 @@ impl Reaches {
     fn padded(&self, x: f64, way: Interval) -> Interval {
         self.accuracy.padded(Interval { lo: x, hi: x }.add(way))
     }
+}
+
+/// Whether a group is one agent whose flow reads no other.
+fn is_alone(group: &Group) -> bool {
+    group.members.len() == 1 && group.leaders.is_empty()
 }

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use rustc_hash::FxHashMap;
+
 use crate::codegen::program::{Layout, LetValue, Program, Record, VarRef};
 use crate::math::Scale;
 use crate::runtime::failure::Failure;
-use crate::runtime::observe::{Cell, Observer, Row};
-use crate::runtime::population::Agents;
+use crate::runtime::observe::{Cell, Observer, Row, Who};
+use crate::runtime::population::{ABSENT, Agents};
 use crate::runtime::present::{Depth, Present};
 use crate::runtime::solve::ulp;
 use crate::runtime::truth;
@@ -32,8 +34,10 @@ struct Recording<'p> {
     record: &'p Record,
     /// Samples written so far.
     n_samples: u64,
-    /// The time of the last row of each agent of the record, in its order; for records of every step.
-    last: Vec<f64>,
+    /// The places of its agents that are alive, in the order of their numbers.
+    roster: Vec<usize>,
+    /// The time of the last row of each of them, by place; for records of every step.
+    last: FxHashMap<usize, f64>,
 }
 
 impl<'p> Recorder<'p> {
@@ -42,9 +46,27 @@ impl<'p> Recorder<'p> {
         let records = program.run.records.iter().map(|record| Recording {
             record,
             n_samples: 0,
-            last: vec![f64::NEG_INFINITY; if record.every.is_none() { record.agents.len() } else { 0 }],
+            roster: record.agents.clone(),
+            last: FxHashMap::default(),
         });
         Self { program, records: records.collect(), time_end, last_instant: (f64::NAN, 0), cells: Vec::new() }
+    }
+
+    /// Takes an agent in that has been created.
+    pub fn admit(&mut self, who: Who, place: usize) {
+        for recording in &mut self.records {
+            if recording.record.born[who.ty] {
+                recording.roster.push(place);
+            }
+        }
+    }
+
+    /// Takes an agent out that has died.
+    pub fn dismiss(&mut self, place: usize) {
+        for recording in &mut self.records {
+            recording.roster.retain(|&other| other != place);
+            recording.last.remove(&place);
+        }
     }
 
     /// The time of the next sample of any record; infinite for none.
@@ -77,8 +99,8 @@ impl<'p> Recorder<'p> {
                 continue;
             }
             self.records[number].n_samples += 1;
-            let record = self.records[number].record;
-            for &agent in &record.agents {
+            for k in 0..self.records[number].roster.len() {
+                let agent = self.records[number].roster[k];
                 self.row(agents, present, number, agent, micro, observer)?;
             }
         }
@@ -92,7 +114,7 @@ impl<'p> Recorder<'p> {
         present: &mut Present,
         observer: &mut dyn Observer,
     ) -> Result<(), Failure> {
-        for agent in 0..agents.len() {
+        for agent in agents.living() {
             self.write_every_step(agents, present, agent, 0, Repeat::Never, observer)?;
         }
         Ok(())
@@ -128,12 +150,12 @@ impl<'p> Recorder<'p> {
         agents: &Agents<'_>,
         present: &mut Present,
         micro: usize,
-        touched: &BTreeSet<usize>,
+        touched: &BTreeSet<(usize, usize)>,
         observer: &mut dyn Observer,
     ) -> Result<(), Failure> {
         let before = if self.last_instant.0 == present.time { self.last_instant.1 } else { 0 };
         self.last_instant = (present.time, before.max(micro));
-        for &agent in touched {
+        for &(_, agent) in touched.iter().filter(|(number, agent)| agents.number(*agent) == *number) {
             self.write_every_step(agents, present, agent, micro, Repeat::Always, observer)?;
         }
         Ok(())
@@ -158,11 +180,12 @@ impl<'p> Recorder<'p> {
             if recording.record.every.is_some() {
                 continue;
             }
-            let Ok(place) = recording.record.agents.binary_search(&agent) else { continue };
-            if repeat == Repeat::Never && recording.last[place] == present.time {
+            if !recording.roster.contains(&agent)
+                || repeat == Repeat::Never && recording.last.get(&agent) == Some(&present.time)
+            {
                 continue;
             }
-            recording.last[place] = present.time;
+            recording.last.insert(agent, present.time);
             self.row(agents, present, number, agent, micro, observer)?;
         }
         Ok(())
@@ -184,7 +207,8 @@ impl<'p> Recorder<'p> {
         for variable in &record.variables[agents.agents[agent].ty] {
             cells.push(variable.map_or(Cell::Empty, |variable| self.cell(agents, present, agent, variable)));
         }
-        let row = Row { time: present.time, micro, agent, mode: &agents.mode(agent).path, cells: &cells };
+        let (who, mode) = (agents.who(agent), &agents.mode(agent).path);
+        let row = Row { time: present.time, micro, agent: who, mode, cells: &cells };
         let told = observer.sample(number, &row);
         self.cells = cells;
         Ok(told?)
@@ -207,8 +231,8 @@ impl<'p> Recorder<'p> {
                 number(row.aux[layout.param(k)], system.params[k].boolean, system.params[k].scale)
             }
             VarRef::Link(k) => {
-                let target = row.aux[layout.link(k)];
-                Cell::Agent((target >= 0.0).then_some(target as usize))
+                let target = agents.linked(agent, k);
+                Cell::Agent((target != ABSENT).then(|| agents.who(target)))
             }
             VarRef::Let(k) => {
                 let definition = &system.lets[k];

@@ -112,6 +112,13 @@ impl Repetitions {
         self.tracks.remove(&instance);
     }
 
+    /// Forgets the kinks of an agent, whose place another has now.
+    pub fn forget_agent(&mut self, place: usize) {
+        if !self.kinks.is_empty() {
+            self.kinks.retain(|&(agent, _), _| agent != place);
+        }
+    }
+
     /// The instances that repeat, each once, in the order of their firing.
     pub fn cycle(&self, instance: u32) -> Vec<u32> {
         let before_last =

@@ -12,7 +12,6 @@ use crate::runtime::solve::extra_state::ExtraStates;
 impl Clocks<'_, '_> {
     /// Algorithm 3, SAsim.
     pub fn sasim(&mut self) -> Result<End, Failure> {
-        self.engine.groups.step_together();
         self.extra = Some(ExtraStates::default());
         self.begin()?;
         loop {

@@ -33,7 +33,8 @@ impl Engine<'_, '_> {
             }
             ActionStep::Emit { slot, event, values, delay, span } => {
                 let sender = rows.slots[*slot];
-                let mut message = Message { sender, event: *event, values: Default::default() };
+                let who = self.agents.who(sender);
+                let mut message = Message { sender, who, event: *event, values: Default::default() };
                 for &value in values {
                     message.values.push(self.carried(&message, value, rows, *span)?);
                 }
@@ -43,7 +44,9 @@ impl Engine<'_, '_> {
             ActionStep::Assign { .. }
             | ActionStep::If { .. }
             | ActionStep::Goto { .. }
-            | ActionStep::Stop { .. } => {}
+            | ActionStep::Stop { .. }
+            | ActionStep::Create(_)
+            | ActionStep::Destroy { .. } => {}
         }
         Ok(())
     }
@@ -59,7 +62,7 @@ impl Engine<'_, '_> {
         distribution: Distribution,
         parameters: &[f64],
     ) -> f64 {
-        let name = self.agents.name(agent);
+        let name = self.agents.draw_path(agent);
         let row = &mut self.agents.agents[agent];
         row.draws[stream] += 1;
         let variable = &self.program.types[row.ty].streams[stream];
@@ -97,7 +100,7 @@ impl Engine<'_, '_> {
         if value.is_finite() {
             return Ok(value);
         }
-        let event = &self.program.types[self.agents.agents[message.sender].ty].events[message.event];
+        let event = &self.program.types[message.who.ty].events[message.event];
         let variable = format!("{}.{}", event.name, event.params[message.values.len()]);
         let blame = self.blame(function, rows.frame, rows.slots, rows.own);
         let place = self.place(message.sender);

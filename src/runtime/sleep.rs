@@ -71,7 +71,7 @@ impl Engine<'_, '_> {
     }
 
     /// Whether a comparison can be bounded by the boxes of its agents.
-    fn is_bounded(&self, index: usize) -> bool {
+    pub fn is_bounded(&self, index: usize) -> bool {
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
         let absent = atom.slots.iter().any(|&slot| slots[slot] == ABSENT);
         !absent && atom.folds.is_empty() && depth_read(self.program.kernel(atom.value)) == Depth::States
@@ -127,12 +127,13 @@ impl Engine<'_, '_> {
         }
         let [a, b] = self.guards.instances[state.instance as usize].roots.map(|agent| agent as usize);
         let (agents, groups) = (&self.agents, &self.groups.groups);
-        let (ta, xa) = agents.at_clock(a, groups[agents.agents[a].group].clock);
-        let (tb, xb) = agents.at_clock(b, groups[agents.agents[b].group].clock);
+        let now = self.present.time;
+        let (ta, xa) = agents.anchor(a, groups[agents.agents[a].group].clock, now);
+        let (tb, xb) = agents.anchor(b, groups[agents.agents[b].group].clock, now);
         let mut distant = None;
         for near in near {
-            let ra = self.reaches.rate(agents, groups, a, near.own, from)?;
-            let rb = self.reaches.rate(agents, groups, b, near.other, from)?;
+            let ra = self.reaches.rate(agents, groups, a, near.own, (ta, &xa))?;
+            let rb = self.reaches.rate(agents, groups, b, near.other, (tb, &xb))?;
             let (a, b) = (xa[near.own], xb[near.other]);
             let until = if a > b {
                 out_of_range((a, ta, ra), (b, tb, rb), near.within, self.stepper.accuracy, (from, end))
@@ -155,7 +156,8 @@ impl Engine<'_, '_> {
         for (slot, &agent) in slots.iter().enumerate() {
             let mut bounds = SmallVec::new();
             if agent != ABSENT && atom.slots.contains(&slot) {
-                self.reaches.states(agents, groups, &mut self.enclosures, agent, (from, until), &mut bounds);
+                let span = (self.present.time, from, until);
+                self.reaches.states(agents, groups, &mut self.enclosures, agent, span, &mut bounds);
             }
             states.push(bounds);
         }
@@ -186,18 +188,14 @@ fn out_of_range(
     (from, end): (f64, f64),
 ) -> Option<f64> {
     let ((a, ta, ra), (b, tb, rb)) = (above, below);
-    let size = a.abs() + b.abs() + (end - from) * (ra.mag() + rb.mag());
+    let size = a.abs() + b.abs() + (end - ta) * ra.mag() + (end - tb) * rb.mag();
     let range = within + 20.0 * (accuracy.absolute + accuracy.tolerance * size);
-    // Before it has come so far, a value has been as far off as the other end of its rate says.
-    let low = |t: f64| {
-        let (da, db) = (t - ta, t - tb);
-        a + f64::min(da * ra.lo, da * ra.hi) - (b + f64::max(db * rb.lo, db * rb.hi))
-    };
+    let low = |t: f64| a + (t - ta) * ra.lo - (b + (t - tb) * rb.hi);
     let is_out = low(from) > range;
     if !is_out {
         return None;
     }
-    // The bound is the least of lines: above the range at both ends, above it between them.
+    // The bound is a line: above the range at both ends, above it between them.
     let closing = rb.hi - ra.lo;
     let meeting = (a - b - range - ta * ra.lo + tb * rb.hi) / closing;
     let until = if closing > 0.0 && meeting < end { meeting - 1e-9 * (meeting - from) } else { end };

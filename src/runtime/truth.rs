@@ -57,6 +57,12 @@ impl<'p> Truths<'_, 'p> {
         }
     }
 
+    /// Whether a part of an instance's condition holds just after the present instant, with these bindings.
+    pub fn part(&self, instance: u32, condition: &Condition, slots: &mut Slots) -> bool {
+        let base = self.guards.definition(instance).base;
+        self.condition(At { instance, base, side: Side::After }, condition, slots)
+    }
+
     fn condition(&self, at: At, condition: &Condition, slots: &mut Slots) -> bool {
         match condition {
             Condition::Constant(truth) => *truth,

@@ -8,6 +8,7 @@ use crate::runtime::certify::ENDLESS;
 use crate::runtime::cold::Cold;
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
+use crate::runtime::hot::Outlook;
 use crate::runtime::observe::End;
 
 /// So many pairs are new in a list, for each agent, that about as much work goes into them as into making the list.
@@ -22,6 +23,8 @@ const SHORTEST: f64 = 1e-6;
 const GROW: f64 = 2.0;
 /// The share of agents that are hot at which a window is long enough.
 const HOT_WANTED: f64 = 0.02;
+/// The share of agents whose steps are kept at which it is.
+const TRACKED_WANTED: f64 = 0.2;
 /// A window in which agents take more steps than this is long enough, too.
 const STEPS_WANTED: f64 = 8.0;
 /// One in which they take fewer is too short, however many are hot.
@@ -55,8 +58,8 @@ impl Engine<'_, '_> {
                 until = until.min(from + length);
                 self.window_end = until;
                 let before = self.stepper.counts.steps;
-                let n_hot = self.open_window(until);
-                length = (length * self.growth(n_hot, before)).max(SHORTEST * self.horizon());
+                let outlook = self.open_window(until);
+                length = (length * self.growth(outlook, before)).max(SHORTEST * self.horizon());
                 self.mind_steps()?;
             }
             if let Some(end) = self.run_until(until)? {
@@ -77,7 +80,7 @@ impl Engine<'_, '_> {
         let accuracy = self.stepper.accuracy;
         self.agents.cold = Cold::new(self.program, self.agents.len(), accuracy, self.time_end);
         if self.agents.cold.is_used() {
-            self.hot = (0..self.agents.len()).collect();
+            self.hot = self.agents.living();
         }
     }
 
@@ -87,11 +90,13 @@ impl Engine<'_, '_> {
     }
 
     /// By how much the next window is to be longer than this one, in which the cold agents have taken their steps.
-    fn growth(&self, n_hot: usize, steps_before: u64) -> f64 {
-        let n = self.agents.len() as f64;
+    fn growth(&self, Outlook { n_hot, n_tracked }: Outlook, steps_before: u64) -> f64 {
+        let n = self.agents.n_living().max(1) as f64;
         let steps = (self.stepper.counts.steps - steps_before) as f64 / n;
         let hot = n_hot as f64 / n;
-        let wanted = (HOT_WANTED / hot).min(STEPS_WANTED / steps).max(STEPS_LEAST / steps);
+        let tracked = n_tracked as f64 / n;
+        let most = (HOT_WANTED / hot).min(TRACKED_WANTED / tracked).min(STEPS_WANTED / steps);
+        let wanted = most.max(STEPS_LEAST / steps);
         wanted.sqrt().clamp(1.0 / GROW, GROW)
     }
 
@@ -101,8 +106,10 @@ impl Engine<'_, '_> {
         if counts.steps + counts.rejected <= self.limits.steps_max {
             return Ok(());
         }
-        self.thaw(0);
-        let place = self.place(0);
+        // Somebody has taken steps, and may have died since.
+        let agent = self.agents.living().first().copied().unwrap_or(0);
+        self.thaw(agent);
+        let place = self.place(agent);
         Err(Reason::StepLimit { place, limit: self.limits.steps_max }.into())
     }
 
@@ -117,7 +124,7 @@ impl Engine<'_, '_> {
 
     /// For how long the next lists are to hold, s: longer if few pairs were new in these, shorter if many were.
     fn next_span(&self, n_new: usize) -> f64 {
-        let share = n_new as f64 / self.agents.len() as f64;
+        let share = n_new as f64 / self.agents.n_living().max(1) as f64;
         let growth = (NEW_WANTED / share).sqrt().clamp(1.0 / GROW, GROW);
         (self.neighbours.span * growth).max(SHORTEST * self.horizon())
     }

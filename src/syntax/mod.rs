@@ -19,6 +19,7 @@ mod dump;
 mod print;
 
 pub use ast::Ast;
+pub use words::keywords;
 
 use crate::base::{Diagnostic, FileId, Span};
 use error::SyntaxError;

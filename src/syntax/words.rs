@@ -87,6 +87,11 @@ pub fn words_that_begin(rule: Rule) -> Vec<String> {
     words.iter().map(|word| word.to_string()).collect()
 }
 
+/// All words of the language.
+pub fn keywords() -> Vec<String> {
+    Rule::all_rules().iter().filter_map(|&rule| keyword(rule)).collect()
+}
+
 /// The keyword of a keyword's rule.
 fn keyword(rule: Rule) -> Option<String> {
     format!("{rule:?}").strip_prefix("kw_").map(String::from)

@@ -139,6 +139,7 @@ pub fn with_flow(graph: Graph, rates: Vec<NodeId>) -> System {
         parent: None,
         depth: 0,
         initial: None,
+        offset: 0,
         history: None,
         active: vec![0],
         flow: Some(flow),
@@ -160,7 +161,9 @@ pub fn with_flow(graph: Graph, rates: Vec<NodeId>) -> System {
         streams: Vec::new(),
         lets: Vec::new(),
         declared: Vec::new(),
+        initials: Default::default(),
         modes: vec![mode],
+        regions: vec![0],
         transitions: Vec::new(),
     };
     let mut system = bare(graph, functions);

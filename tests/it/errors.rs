@@ -19,9 +19,9 @@ use hyc::runtime::observe::End;
 use hyc::{calculus, model, runtime, syntax};
 
 /// Codes of limits and of machines that no short example shows.
-const WITHOUT_EXAMPLE: [&str; 15] = [
-    "HY0102", "HY0119", "HY0292", "HY0294", "HY0295", "HY0296", "HY0297", "HY0298", "HY0299", "HY0304",
-    "HY0305", "HY0306", "HY0307", "HY0401", "HY0402",
+const WITHOUT_EXAMPLE: [&str; 17] = [
+    "HY0102", "HY0119", "HY0289", "HY0292", "HY0293", "HY0294", "HY0295", "HY0296", "HY0297", "HY0298",
+    "HY0299", "HY0304", "HY0305", "HY0306", "HY0307", "HY0401", "HY0402",
 ];
 
 /// A model that never ends is a failure of this test, not of the reader's patience.
@@ -59,6 +59,7 @@ fn example(entry: &Explanation) -> Option<Example> {
             ("-p", Some((name, value))) => params.push((name.to_string(), value.to_string())),
             ("--limit", Some(("max_steps", value))) => limits.steps_max = value.parse().unwrap(),
             ("--limit", Some(("max_guards", value))) => limits.guards_max = value.parse().unwrap(),
+            ("--limit", Some(("max_agents", value))) => limits.agents_max = value.parse().unwrap(),
             _ => {}
         }
     }
@@ -66,7 +67,11 @@ fn example(entry: &Explanation) -> Option<Example> {
         let (name, rest) = text.split_once('\n').unwrap();
         (name.to_string(), rest.to_string())
     });
-    Some(Example { bad, good, params, limits, data: data.collect() })
+    let imported = fenced(entry, "hy imported").into_iter().map(|text| {
+        let name = text.lines().next().and_then(|line| line.strip_prefix("// "));
+        (name.unwrap().to_string(), text)
+    });
+    Some(Example { bad, good, params, limits, data: data.chain(imported).collect() })
 }
 
 /// Data files in memory.

@@ -14,7 +14,7 @@ use hyc::runtime::Algorithm;
 use hyc::runtime::limits::Limits;
 use hyc::runtime::observe::{
     Cause, Cell, End, Explanation, FalseAssert, Last, Observer, Outcome, Row, ShownComparison, Stats,
-    Undecided,
+    Undecided, Who,
 };
 use hyc::runtime::paper::Form;
 
@@ -23,6 +23,7 @@ use hyc::runtime::paper::Form;
 pub struct Case {
     name: String,
     text: String,
+    files: Vec<(String, String)>,
     settings: Settings,
     limits: Limits,
     algorithm: Algorithm,
@@ -128,17 +129,7 @@ pub fn simulate_error(text: &str) -> (Run, Diagnostic) {
 /// What is wrong with a model that must be wrong: the messages in full.
 #[track_caller]
 pub fn refused(text: &str) -> String {
-    let case = Case::new(text);
-    let mut sources = SourceMap::default();
-    let diagnostics = match case.model(&mut sources) {
-        Err(diagnostics) => diagnostics,
-        Ok(model) => match hyc::calculus::derive(&model) {
-            Err(diagnostics) => diagnostics,
-            Ok(_) => panic!("the model should be refused:\n{text}"),
-        },
-    };
-    assert!(diagnostics.iter().any(Diagnostic::is_error), "refused without an error: {diagnostics:#?}");
-    words(&diagnostics)
+    words(&Case::new(text).refused().1)
 }
 
 /// The text of diagnostics without places.
@@ -192,6 +183,12 @@ impl Case {
         let path = format!("{}/models/{name}", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
         Self { name: path, text, ..Self::default() }
+    }
+
+    /// A file that the model names.
+    pub fn file(mut self, name: &str, text: &str) -> Self {
+        self.files.push((name.into(), text.into()));
+        self
     }
 
     /// `-p name=value`
@@ -248,8 +245,28 @@ impl Case {
     /// The checked model.
     pub fn model(&self, sources: &mut SourceMap) -> Result<Model, Vec<Diagnostic>> {
         let ast = self.ast(sources)?;
-        let checked = hyc::model::check(&ast, sources, &mut Data, &self.settings);
+        let checked = self.check(&ast, sources);
         checked.model.ok_or(checked.diagnostics)
+    }
+
+    /// What a check of its tree comes to.
+    pub fn check(&self, ast: &hyc::syntax::Ast, sources: &mut SourceMap) -> hyc::model::Checked {
+        hyc::model::check(ast, sources, &mut Data(&self.files), &self.settings)
+    }
+
+    /// What is wrong with a model that must be wrong.
+    #[track_caller]
+    pub fn refused(&self) -> (SourceMap, Vec<Diagnostic>) {
+        let mut sources = SourceMap::default();
+        let diagnostics = match self.model(&mut sources) {
+            Err(diagnostics) => diagnostics,
+            Ok(model) => match hyc::calculus::derive(&model) {
+                Err(diagnostics) => diagnostics,
+                Ok(_) => panic!("the model should be refused:\n{}", self.text),
+            },
+        };
+        assert!(diagnostics.iter().any(Diagnostic::is_error), "refused without an error: {diagnostics:#?}");
+        (sources, diagnostics)
     }
 
     /// Its equations.
@@ -331,11 +348,14 @@ impl Case {
     }
 }
 
-/// The data files of the folder `models`.
-struct Data;
+/// The files of a case, and the data files of the folder `models`.
+struct Data<'a>(&'a [(String, String)]);
 
-impl Files for Data {
+impl Files for Data<'_> {
     fn read(&mut self, path: &str) -> io::Result<Vec<u8>> {
+        if let Some((_, text)) = self.0.iter().find(|(name, _)| name == path) {
+            return Ok(text.clone().into_bytes());
+        }
         std::fs::read(format!("{}/models/{path}", env!("CARGO_MANIFEST_DIR")))
     }
 }
@@ -343,6 +363,7 @@ impl Files for Data {
 /// Writes everything down.
 struct Recorder {
     agents: Vec<String>,
+    types: Vec<String>,
     variables: Vec<(Vec<String>, Vec<String>)>,
     events: Vec<Fired>,
     samples: Vec<Vec<Sample>>,
@@ -360,8 +381,10 @@ impl Recorder {
             |variables: &[hyc::model::ir::Variable]| variables.iter().map(|v| v.name.clone()).collect();
         let variables = model.types.iter().map(|ty| (names(&ty.states), names(&ty.discretes))).collect();
         let samples = model.run.records.iter().map(|_| Vec::new()).collect();
+        let types = model.types.iter().map(|ty| ty.name.clone()).collect();
         Self {
             agents,
+            types,
             variables,
             events: Vec::new(),
             samples,
@@ -370,6 +393,14 @@ impl Recorder {
             finals: Vec::new(),
             reasons,
         }
+    }
+
+    /// `cars[3]`, `Car#17`
+    fn name(&self, who: Who) -> String {
+        self.agents
+            .get(who.number)
+            .cloned()
+            .unwrap_or_else(|| format!("{}#{}", self.types[who.ty], who.number))
     }
 
     fn run(self, outcome: Outcome, sources: SourceMap) -> Run {
@@ -402,7 +433,7 @@ fn number(cell: &Cell) -> f64 {
         Cell::Empty => f64::NAN,
         Cell::Number(x) => *x,
         Cell::Bool(b) => f64::from(u8::from(*b)),
-        Cell::Agent(agent) => agent.map_or(-1.0, |k| k as f64),
+        Cell::Agent(agent) => agent.map_or(-1.0, |who| who.number as f64),
     }
 }
 
@@ -413,8 +444,8 @@ impl Observer for Recorder {
             time: event.time,
             micro: event.micro,
             transition: event.transition.into(),
-            agent: self.agents[event.agent].clone(),
-            other: event.other.map_or(String::new(), |other| self.agents[other].clone()),
+            agent: self.name(event.agent),
+            other: event.other.map_or(String::new(), |other| self.name(other)),
             from: from.into(),
             to: to.into(),
         });
@@ -422,10 +453,11 @@ impl Observer for Recorder {
     }
 
     fn sample(&mut self, record: usize, row: &Row<'_>) -> io::Result<()> {
+        let agent = self.name(row.agent);
         self.samples[record].push(Sample {
             time: row.time,
             micro: row.micro,
-            agent: self.agents[row.agent].clone(),
+            agent,
             mode: row.mode.into(),
             cells: row.cells.iter().map(number).collect(),
         });
@@ -438,7 +470,7 @@ impl Observer for Recorder {
         let discretes = discretes.iter().cloned().zip(last.discretes.iter().map(number));
         self.finals.push(Final {
             time: last.time,
-            agent: self.agents[last.agent].clone(),
+            agent: self.name(last.agent),
             mode: last.mode.into(),
             values: states.chain(discretes).collect(),
         });
@@ -454,8 +486,8 @@ impl Observer for Recorder {
             time: told.time,
             micro: told.micro,
             transition: told.transition.into(),
-            agent: self.agents[told.agent].clone(),
-            other: told.other.map_or(String::new(), |other| self.agents[other].clone()),
+            agent: self.name(told.agent),
+            other: told.other.map_or(String::new(), |other| self.name(other)),
             cause: told.cause.clone(),
             shown: told.shown.clone(),
         });

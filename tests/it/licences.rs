@@ -87,6 +87,14 @@ fn split_outside<'a>(text: &'a str, word: &str) -> Option<(&'a str, &'a str)> {
 }
 
 #[test]
+fn what_is_vendored_has_its_licence_beside_it() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/picture");
+    let (charts, font) = (folder.join("page/vendor/uPlot.LICENSE"), folder.join("font/LICENSE"));
+    assert!(std::fs::read_to_string(charts).unwrap().contains("MIT License"));
+    assert!(std::fs::read_to_string(font).unwrap().contains("Permission is hereby granted, free of charge"));
+}
+
+#[test]
 fn licence_expressions_are_read_as_they_mean() {
     for expression in ["MIT", "MIT OR GPL-3.0", "MIT/Apache-2.0", "(MIT OR Apache-2.0) AND Unicode-3.0"] {
         assert!(is_allowed(expression), "{expression}");

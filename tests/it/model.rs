@@ -173,6 +173,10 @@ fn settings_of(text: &str) -> Settings {
             "--limit" => match value.split_once('=').expect("NAME=N") {
                 ("max_states", n) => settings.limits.states_max = n.parse().expect("a number"),
                 ("max_modes", n) => settings.limits.modes_max = n.parse().expect("a number"),
+                ("max_configurations", n) => {
+                    settings.limits.configurations_max = n.parse().expect("a number");
+                }
+                ("max_table_rows", n) => settings.limits.table_rows_max = n.parse().expect("a number"),
                 ("max_cells", n) => settings.limits.cells_max = n.parse().expect("a number"),
                 (other, _) => panic!("the limit {other} is not known to this test"),
             },

@@ -3,6 +3,7 @@
 mod rectifier;
 mod stick_slip;
 mod aircraft;
+mod sector;
 mod genetic_switch;
 mod poisson_gene;
 mod relay_clock;
@@ -18,6 +19,7 @@ mod double_crossing;
 mod multirate;
 mod interlock;
 mod convoy;
+mod metro;
 
 use crate::harness::{Case, Ended, near};
 

@@ -69,7 +69,7 @@ struct Log(Vec<Hit>);
 impl Observer for Log {
     fn event(&mut self, event: &Event<'_>) -> io::Result<()> {
         let wall = WALLS.iter().find(|wall| event.transition == format!("Car.{wall}"));
-        let (a, b) = (event.agent, event.other.unwrap_or(event.agent));
+        let (a, b) = (event.agent.number, event.other.unwrap_or(event.agent).number);
         self.0.push(Hit {
             time: event.time,
             what: wall.unwrap_or(&"pair"),

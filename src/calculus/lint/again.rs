@@ -21,7 +21,7 @@ use crate::math::Interval;
 
 /// Looks at every transition into its own mode.
 pub fn transitions(system: &System, bounds: &Bounds, found: &mut Vec<Warning>) {
-    for (number, ty) in system.types.iter().enumerate() {
+    for (number, ty) in system.types.iter().enumerate().filter(|(_, ty)| ty.regions.len() == 1) {
         for (k, transition) in ty.transitions.iter().enumerate() {
             let into_itself = transition.source != 0
                 && transition.target.is_some_and(|target| target.mode.index() == transition.source);
@@ -99,7 +99,6 @@ impl<'s> Kept<'s> {
             let leaf = match target {
                 Target::State(column) => Node::State { slot: 0, column: *column as u32 },
                 Target::Aux(column) => Node::Aux { slot: 0, column: *column as u32 },
-                Target::Mode => continue,
             };
             written.insert(leaf, reader.function(*value));
         }

@@ -80,7 +80,7 @@ pub struct Effect<'s> {
     pub unclear: FxHashSet<Target>,
     /// All columns that are written.
     pub writes: FxHashSet<Target>,
-    /// It may end the run.
+    /// It may end the run, or change who there is.
     pub stops: bool,
 }
 
@@ -117,13 +117,14 @@ fn conditional(steps: &[ActionStep], found: &mut FxHashSet<Target>) {
                 conditional(otherwise, found);
             }
             ActionStep::Emit { .. } | ActionStep::Goto { .. } | ActionStep::Stop { .. } => {}
+            ActionStep::Create(_) | ActionStep::Destroy { .. } => {}
         }
     }
 }
 
 fn stops(steps: &[ActionStep]) -> bool {
     steps.iter().any(|step| match step {
-        ActionStep::Stop { .. } => true,
+        ActionStep::Stop { .. } | ActionStep::Create(_) | ActionStep::Destroy { .. } => true,
         ActionStep::If { then, otherwise, .. } => stops(then) || stops(otherwise),
         ActionStep::Assign { .. }
         | ActionStep::Draw { .. }

@@ -12,7 +12,7 @@ use crate::calculus::system::{AgentSystem, System, TransitionSystem};
 
 /// Looks at the transitions of every mode.
 pub fn transitions(system: &System, bounds: &Bounds, found: &mut Vec<Warning>) {
-    for ty in &system.types {
+    for ty in system.types.iter().filter(|ty| ty.regions.len() == 1) {
         let of_mode =
             |mode: usize| ty.modes[mode].transitions.iter().take(COMPARED_MAX).map(|&k| &ty.transitions[k]);
         let leaving = |mode: usize| {

@@ -22,7 +22,7 @@ const COMPARED_MAX: usize = 32;
 /// Looks at every two modes with transitions both ways.
 pub fn transitions(system: &System, bounds: &Bounds, found: &mut Vec<Warning>) {
     let of_these = bounds.with_params(system);
-    for (number, ty) in system.types.iter().enumerate() {
+    for (number, ty) in system.types.iter().enumerate().filter(|(_, ty)| ty.regions.len() == 1) {
         let mut between: FxHashMap<(usize, usize), Vec<usize>> = FxHashMap::default();
         for (k, transition) in ty.transitions.iter().enumerate() {
             if let Some(target) = transition.target.map(|target| target.mode.index())

@@ -1,6 +1,8 @@
 //! Transitions and actions as equations: what fires, and what it does.
 
-use super::{Destination, Distribution, Frame, FunctionId, Guard};
+use std::sync::Arc;
+
+use super::{Destination, Distribution, Frame, FunctionId, Guard, Target, VarRef};
 use crate::base::Span;
 
 /// A transition of an agent type or an interaction.
@@ -92,17 +94,6 @@ pub struct ActionList {
     pub writes: Vec<(usize, Target)>,
 }
 
-/// A column that actions write.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Target {
-    /// A state.
-    State(usize),
-    /// A discrete variable, by its auxiliary column (absolute index).
-    Aux(usize),
-    /// The mode.
-    Mode,
-}
-
 /// A step of a list of actions.
 #[derive(Clone, Debug)]
 pub enum ActionStep {
@@ -170,4 +161,54 @@ pub enum ActionStep {
         /// Where it stands.
         span: Span,
     },
+    /// Makes an agent, at the end of the micro-step.
+    Create(Arc<Birth>),
+    /// Removes the agent in the slot, if there is one, at the end of the micro-step.
+    Destroy {
+        /// Who.
+        slot: usize,
+        /// Where it stands.
+        span: Span,
+    },
+}
+
+/// What the agents of a type start with, where they are not given anything else: what is declared, in an order in which each
+/// finds what it reads; parameters first.
+#[derive(Clone, Debug, Default)]
+pub struct Initials {
+    /// Reads the agent that is made, as far as it is.
+    pub frame: Frame,
+    /// What each variable starts with.
+    pub values: Vec<(VarRef, Source)>,
+}
+
+/// Where the value of a variable comes from when its agent is made.
+#[derive(Clone, Debug)]
+pub enum Source {
+    /// One output.
+    Number(FunctionId),
+    /// A random number.
+    Draw {
+        /// How it is distributed.
+        distribution: Distribution,
+        /// One output each.
+        parameters: Vec<FunctionId>,
+        /// Where it stands.
+        span: Span,
+    },
+}
+
+/// How an agent is made by an action.
+#[derive(Clone, Debug)]
+pub struct Birth {
+    /// Its type.
+    pub ty: usize,
+    /// The leaf mode it starts in.
+    pub mode: usize,
+    /// What it is given, by functions of the list's frame.
+    pub given: Vec<(VarRef, Source)>,
+    /// The links that it is given: number of the link, slot of the agent that it leads to; none: to nobody.
+    pub links: Vec<(usize, Option<usize>)>,
+    /// Where it stands.
+    pub span: Span,
 }

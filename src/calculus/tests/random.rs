@@ -57,6 +57,7 @@ pub fn model() -> Model {
         depth: 0,
         children: Vec::new(),
         initial: None,
+        is_region: false,
         flow: Vec::new(),
         invariants: Vec::new(),
         asserts: Vec::new(),
@@ -74,6 +75,7 @@ pub fn model() -> Model {
         events: Vec::new(),
         lets: Vec::new(),
         declared: Vec::new(),
+        initials: Default::default(),
         modes: [root].into_iter().collect(),
         transitions: Vec::new(),
     });

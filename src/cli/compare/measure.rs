@@ -8,7 +8,7 @@ use crate::base::Diagnostic;
 use crate::codegen::program::Program;
 use crate::model::ir::Integrator;
 use crate::runtime::limits::Limits;
-use crate::runtime::observe::{End, Event, Observer, Outcome, Row, Stats};
+use crate::runtime::observe::{End, Event, Observer, Outcome, Row, Stats, Who};
 use crate::runtime::paper::{Algorithm, Paper};
 use crate::runtime::simulate_by;
 
@@ -19,10 +19,10 @@ pub struct Logged {
     pub time: f64,
     /// `Car.left`.
     pub transition: String,
-    /// The agent's number.
-    pub agent: usize,
+    /// The agent.
+    pub agent: Who,
     /// The other participant of an interaction.
-    pub other: Option<usize>,
+    pub other: Option<Who>,
 }
 
 /// A row of a recorded trajectory: agent, time, the cells that are numbers.
@@ -30,8 +30,8 @@ pub struct Logged {
 pub struct Recorded {
     /// s.
     pub time: f64,
-    /// The agent's number.
-    pub agent: usize,
+    /// The agent.
+    pub agent: Who,
     /// What is recorded; NaN for what is no number.
     pub cells: Vec<f64>,
 }

@@ -92,6 +92,8 @@ pub(in crate::model) enum SystemError {
     Missing { kind: &'static str, name: String, agent: String, span: Span, declared: Span },
     /// An argument that the agent type has no place for.
     UnknownArgument { name: String, agent: String, span: Span, similar: Option<String>, is_let: bool },
+    /// An argument for a link that has an expression.
+    FollowsLink { name: String, span: Span },
     /// Two values for one variable.
     GivenTwice { name: String, span: Span, first: Span, help: &'static str },
     /// An index beyond its array.
@@ -124,6 +126,11 @@ impl From<SystemError> for Diagnostic {
                 }
                 with_similar(unknown, &similar)
             }
+            SystemError::FollowsLink { name, span } => {
+                Diagnostic::error("HY0258", format!("`{name}` follows from its own expression"))
+                    .label(span, "given here all the same")
+                    .help("leave it out, or declare the link without an expression")
+            }
             SystemError::GivenTwice { name, span, first, help } => {
                 Diagnostic::error("HY0268", format!("`{name}` is given twice"))
                     .label(span, "the second time")
@@ -151,6 +158,38 @@ impl From<SystemError> for Diagnostic {
                     .label(span, format!("this is {found}")),
                 &similar,
             ),
+        }
+    }
+}
+
+/// What is wrong with a `table`.
+pub(in crate::model) enum TableError {
+    /// The file has no such column.
+    NoColumn { name: String, file: String, span: Span, similar: Option<String> },
+    /// Nothing but a header line.
+    NoRows { span: Span, used: Span },
+    /// The first column does not rise from row to row.
+    NotRising { span: Span, first: Span, used: Span },
+}
+
+impl From<TableError> for Diagnostic {
+    fn from(error: TableError) -> Self {
+        match error {
+            TableError::NoColumn { name, file, span, similar } => with_similar(
+                Diagnostic::error("HY0286", format!("`{file}` has no column `{name}`"))
+                    .label(span, "in no place of its header line"),
+                &similar,
+            ),
+            TableError::NoRows { span, used } => Diagnostic::error("HY0287", "a table without rows")
+                .label(span, "nothing follows")
+                .label(used, "read here"),
+            TableError::NotRising { span, first, used } => {
+                Diagnostic::error("HY0288", "the first column of a table must rise from row to row")
+                    .label(span, "not above the one before")
+                    .label(first, "the one before")
+                    .label(used, "read here")
+                    .help("sort the rows; of two values at one place write the second a little later")
+            }
         }
     }
 }
@@ -235,6 +274,10 @@ pub(in crate::model) enum LimitError {
     States { agent: String, most: usize, span: Span },
     /// More modes of one agent type than the limit.
     Modes { agent: String, most: usize, span: Span },
+    /// More combinations of modes of the regions of an agent type than the limit.
+    Configurations { agent: String, count: usize, most: usize, span: Span },
+    /// More rows of a table than the limit.
+    TableRows { most: usize, span: Span },
     /// More cells of one sample than the limit.
     Cells { most: usize, span: Span },
     /// Constants that take too long.
@@ -265,6 +308,17 @@ impl From<LimitError> for Diagnostic {
                 Diagnostic::error("HY0298", format!("`{agent}` has more than {most} modes"))
                     .label(span, "one too many")
                     .help(raise("max_modes"))
+            }
+            LimitError::Configurations { agent, count, most, span } => {
+                let title = format!("the regions of `{agent}` have {count} combinations of modes, more than {most}");
+                Diagnostic::error("HY0293", title)
+                    .label(span, "each combination has equations of its own")
+                    .help(raise("max_configurations"))
+            }
+            LimitError::TableRows { most, span } => {
+                Diagnostic::error("HY0289", format!("a table of more than {most} rows"))
+                    .label(span, "each row is a kink of what reads it")
+                    .help(raise("max_table_rows"))
             }
             LimitError::Cells { most, span } => {
                 Diagnostic::error("HY0299", format!("a sample of more than {most} cells"))

@@ -25,7 +25,7 @@ impl From<EventError> for Diagnostic {
                     Some(owner) => format!("agent type `{owner}` has no event `{name}`"),
                     None => format!("no agent type has an event `{name}`"),
                 };
-                let diagnostic = Diagnostic::error("HY0255", title).label(span, "no such event");
+                let diagnostic = Diagnostic::error("HY0236", title).label(span, "no such event");
                 match similar {
                     Some(_) => with_similar(diagnostic, &similar),
                     None => diagnostic.help(format!("declare it in the agent that emits it: `event {name}`")),
@@ -33,7 +33,7 @@ impl From<EventError> for Diagnostic {
             }
             EventError::Differ { name, span, declared: [(a, first), (b, second)] } => {
                 let title = format!("`{a}` and `{b}` both have an event `{name}`, with different values");
-                Diagnostic::error("HY0256", title)
+                Diagnostic::error("HY0237", title)
                     .label(span, "which of them?")
                     .label(first, format!("that of `{a}`"))
                     .label(second, format!("that of `{b}`"))
@@ -45,14 +45,14 @@ impl From<EventError> for Diagnostic {
                     None => format!("write who emits `{name}`, before a dot"),
                 };
                 Diagnostic::error(
-                    "HY0257",
+                    "HY0238",
                     format!("who emits `{name}`? An interaction has two participants"),
                 )
                 .label(span, "neither")
                 .help(help)
             }
             EventError::EmitsForOther { place, span } => {
-                Diagnostic::error("HY0258", format!("an agent emits only its own events, not `{place}`"))
+                Diagnostic::error("HY0239", format!("an agent emits only its own events, not `{place}`"))
                     .label(span, "belongs to another agent")
                     .help("only an `interaction` may let the agents that take part in it emit")
             }

@@ -6,10 +6,12 @@ pub(super) mod dimensions;
 pub(super) mod modes;
 pub(super) mod events;
 pub(super) mod data;
+pub(super) mod imports;
 
-pub(super) use data::{FileError, LimitError, OverrideError, RunError, SystemError, ValueError};
+pub(super) use data::{FileError, LimitError, OverrideError, RunError, SystemError, TableError, ValueError};
 pub(super) use dimensions::{DimensionError, Evidence, Side};
 pub(super) use events::EventError;
+pub(super) use imports::ImportError;
 pub(super) use modes::{ActionError, ModeError};
 pub(super) use names::NameError;
 pub(super) use types::TypeError;

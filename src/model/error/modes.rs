@@ -14,6 +14,10 @@ pub(in crate::model) enum ModeError {
     NoInitial { owner: String, span: Span, example: String },
     /// Two initial modes.
     TwoInitial { owner: String, span: Span, first: Span },
+    /// A mode beside regions.
+    BesideRegion { name: String, span: Span, first: Span },
+    /// A transition from one region into another.
+    AcrossRegions { from: String, to: String, span: Span },
     /// The history of a mode without submodes.
     NoHistory { path: String, declared: Span, span: Span },
     /// A flow reads an agent that may not be there.
@@ -72,6 +76,19 @@ impl From<ModeError> for Diagnostic {
                     .label(first, "the first one")
                     .help("leave out one `initial`")
             }
+            ModeError::BesideRegion { name, span, first } => Diagnostic::error(
+                "HY0249",
+                format!("mode `{name}` stands beside a region"),
+            )
+            .label(span, "in no region")
+            .label(first, "a region: its modes are active beside those of other regions")
+            .help("put it and the modes beside it into a region of their own"),
+            ModeError::AcrossRegions { from, to, span } => Diagnostic::error(
+                "HY0255",
+                format!("a transition of region `{from}` leads into region `{to}`"),
+            )
+            .label(span, format!("in region `{to}`"))
+            .help("a region changes its own mode only: let the other one wait for it (`when self is ...`), or write the transition outside of the regions, which leaves them all"),
             ModeError::NoHistory { path, declared, span } => {
                 Diagnostic::error("HY0248", format!("`{path}` has no modes inside, and so no history"))
                     .label(span, "which submode was active last?")
@@ -95,7 +112,7 @@ impl From<ModeError> for Diagnostic {
             .label(read, format!("`{path}` may be none here"))
             .help(format!("say when it counts: `rate ... when {path}`, or `if {path} then ... else 0`")),
             ModeError::BadRate { span, value } => {
-                Diagnostic::error("HY0249", "a rate must be finite, and 0 1/s or more")
+                Diagnostic::error("HY0219", "a rate must be finite, and 0 1/s or more")
                     .label(span, format!("this is {value} 1/s"))
             }
             ModeError::EdgeOutsideGuard { name, span } => {
@@ -125,6 +142,10 @@ pub(in crate::model) enum ActionError {
     WhoseVariable { name: String, span: Span, participants: Option<[String; 2]> },
     /// `else if` without end.
     TooManyBranches { span: Span, most: usize },
+    /// `create` of an array, or of the rows of a file.
+    CreatesMany { span: Span, what: &'static str },
+    /// `destroy` of something else.
+    DestroysNoAgent { span: Span, found: String },
 }
 
 impl From<ActionError> for Diagnostic {
@@ -165,6 +186,16 @@ impl From<ActionError> for Diagnostic {
                 Diagnostic::error("HY0295", format!("an `if` has at most {most} branches"))
                     .label(span, "more than that")
                     .help("split it into several")
+            }
+            ActionError::CreatesMany { span, what } => {
+                Diagnostic::error("HY0256", "an action creates one agent at a time")
+                    .label(span, format!("{what} here"))
+                    .help("write one `create` for each, or let a transition fire as often as it is needed")
+            }
+            ActionError::DestroysNoAgent { span, found } => {
+                Diagnostic::error("HY0257", "only an agent can be destroyed")
+                    .label(span, format!("this is {found}"))
+                    .help("write `destroy self`, or the name of a link or of an agent that is bound here")
             }
         }
     }

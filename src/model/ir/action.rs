@@ -1,6 +1,6 @@
 //! Transitions and actions of a model: what fires, and what it does.
 
-use super::{BinderId, ExprId, ModeId, TypeId, VarRef};
+use super::{BinderId, ExprId, Given, Inside, ModeId, TypeId, VarRef};
 use crate::base::Span;
 use crate::math::draw::Distribution;
 
@@ -32,25 +32,6 @@ pub struct Destination {
     pub mode: ModeId,
     /// Which of its submodes.
     pub inside: Inside,
-}
-
-impl Destination {
-    /// What stands behind the mode's path: nothing, or `.history`.
-    pub fn suffix(self) -> &'static str {
-        match self.inside {
-            Inside::Initial => "",
-            Inside::History => ".history",
-        }
-    }
-}
-
-/// Which submode of a mode is entered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Inside {
-    /// The initial one.
-    Initial,
-    /// `M.history`: the one that was active last, at *its* initial one; the initial one if the mode was never active.
-    History,
 }
 
 /// What makes a transition fire.
@@ -147,4 +128,32 @@ pub enum Action {
         /// Where it stands.
         span: Span,
     },
+    /// Makes an agent, at the end of the micro-step.
+    Create(Box<Create>),
+    /// Removes an agent, at the end of the micro-step; nothing if the expression is `none`.
+    Destroy {
+        /// Which.
+        agent: ExprId,
+        /// Where it stands.
+        span: Span,
+    },
+}
+
+/// `create Type(arguments) in Mode`: what the arguments do not give comes from the type's [`Initials`](super::Initials).
+#[derive(Clone, Debug)]
+pub struct Create {
+    /// The type of the agent.
+    pub ty: TypeId,
+    /// The leaf mode it starts in.
+    pub mode: ModeId,
+    /// By parameter, what the argument gives.
+    pub params: Vec<Option<Given>>,
+    /// By state.
+    pub states: Vec<Option<Given>>,
+    /// By discrete variable.
+    pub discretes: Vec<Option<Given>>,
+    /// By link, the agent.
+    pub links: Vec<Option<ExprId>>,
+    /// Where it stands.
+    pub span: Span,
 }

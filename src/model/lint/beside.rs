@@ -33,7 +33,7 @@ pub(super) fn numbers(context: &Context, found: &mut Vec<Warning>) {
     for (ty, names) in context.model.types.iter().zip(&context.agents) {
         for (state, rate, _) in ty.modes.iter().flat_map(|mode| &mode.flow) {
             let Some(place) = names.states[*state].place else { continue };
-            if !context.quantities.contains_key(rate) {
+            if context.quantities.get(*rate).is_none() {
                 check(context, *rate, place, "/s", found);
             }
         }
@@ -72,8 +72,8 @@ fn firsts(context: &Context) -> Vec<ExprId> {
 
 /// Where a name or a literal has its unit.
 fn declared(context: &Context, id: ExprId) -> Option<Span> {
-    let quantity = match context.quantities.get(&id) {
-        Some(&quantity) => quantity,
+    let quantity = match context.quantities.get(id) {
+        Some(quantity) => quantity,
         None => context.member_quantity(id),
     };
     match quantity {

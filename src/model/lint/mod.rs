@@ -19,6 +19,9 @@ use super::operands::for_each_operand;
 use crate::base::Diagnostic;
 use warning::Warning;
 
+/// Names that nothing uses, types without agents, modes that nothing enters: of an imported file other models may do so.
+const OF_USE: [&str; 4] = ["HY0601", "HY0602", "HY0603", "HY0604"];
+
 /// Everything worth a warning, in the order of the text.
 pub(super) fn lint(context: &mut Context) -> Vec<Diagnostic> {
     if context.has_errors() {
@@ -35,6 +38,11 @@ pub(super) fn lint(context: &mut Context) -> Vec<Diagnostic> {
     settled::conditions(context, &mut found);
     repeated::conditions(context, &mut found);
     let mut found: Vec<Diagnostic> = found.into_iter().map(Diagnostic::from).collect();
+    let main = context.model.files.last().copied();
+    found.retain(|diagnostic| {
+        let is_of_model = diagnostic.labels.first().is_none_or(|label| Some(label.span.file) == main);
+        is_of_model || !OF_USE.contains(&diagnostic.code)
+    });
     found.sort_by_key(|diagnostic| diagnostic.labels.first().map(|label| label.span));
     found.dedup();
     found

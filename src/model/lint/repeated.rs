@@ -16,6 +16,10 @@ pub(super) fn conditions(context: &mut Context, found: &mut Vec<Warning>) {
     for number in 0..context.model.types.len() {
         let ty = TypeId::new(number);
         let mut first: FxHashMap<(ModeId, String), usize> = FxHashMap::default();
+        // Beside other regions, what comes first may have to wait for what one of them writes.
+        if context.model.types[ty].has_regions() {
+            continue;
+        }
         for k in context.in_order(ty) {
             let transition = &context.model.types[ty].transitions[k.1];
             let Some(words) = context.words_of(transition) else { continue };

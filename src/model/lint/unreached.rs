@@ -36,6 +36,9 @@ fn starts(model: &Model) -> Vec<Vec<ModeId>> {
             known.push(agent.mode);
         }
     }
+    for create in model.creations() {
+        starts[create.ty.index()].push(create.mode);
+    }
     for interaction in model.interactions.iter() {
         for transition in &interaction.transitions {
             gotos(&transition.actions, &interaction.types, &mut starts);
@@ -53,6 +56,7 @@ fn gotos(list: &[Action], types: &[TypeId; 2], starts: &mut [Vec<ModeId>]) {
                 gotos(otherwise, types, starts);
             }
             Action::Assign { .. } | Action::Draw { .. } | Action::Emit { .. } | Action::Stop { .. } => {}
+            Action::Create(_) | Action::Destroy { .. } => {}
         }
     }
 }
@@ -71,6 +75,7 @@ fn reached(ty: &AgentType, starts: &[ModeId]) -> Vec<bool> {
         }
         pending.extend(ty.modes[mode].parent);
         pending.extend(ty.modes[mode].initial);
+        pending.extend(ty.modes[mode].children.iter().filter(|&&child| ty.modes[child].is_region));
         pending.extend(&from[mode.index()]);
     }
     reached

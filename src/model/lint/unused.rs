@@ -9,7 +9,9 @@ use rustc_hash::FxHashSet;
 use super::{Warning, any_within, guard};
 use crate::base::Span;
 use crate::model::context::{Body, Context, Meaning, Progress};
-use crate::model::ir::{Action, Aggregate, ExprId, ExprKind, Interaction, Model, Trigger, TypeId, VarRef};
+use crate::model::ir::{
+    Action, Aggregate, ExprId, ExprKind, Given, Interaction, Model, Trigger, TypeId, VarRef,
+};
 use crate::model::types::Ty;
 use crate::syntax::ast::Formal;
 
@@ -65,7 +67,8 @@ pub(super) fn members(context: &Context, found: &mut Vec<Warning>) {
     if is_library(model) {
         return;
     }
-    let made: FxHashSet<TypeId> = model.population.blocks.iter().map(|block| block.ty).collect();
+    let mut made: FxHashSet<TypeId> = model.population.blocks.iter().map(|block| block.ty).collect();
+    made.extend(model.creations().iter().map(|create| create.ty));
     let (read, written) = (read(model), written(model));
     for (id, ty) in model.types.iter_enumerated() {
         if !made.contains(&id) {
@@ -214,6 +217,12 @@ fn participants(model: &Model, interaction: &Interaction, formals: &[Formal], fo
                 }
                 Action::If { condition, .. } => roots.push(*condition),
                 Action::Goto { participant, .. } => moved |= *participant == which,
+                Action::Create(create) => {
+                    let given = create.params.iter().chain(&create.states).chain(&create.discretes);
+                    roots.extend(given.flatten().flat_map(Given::exprs));
+                    roots.extend(create.links.iter().flatten());
+                }
+                Action::Destroy { agent, .. } => roots.push(*agent),
                 Action::Stop { .. } => {}
             });
         }

@@ -116,6 +116,13 @@ impl Segment {
 }
 
 impl Segment {
+    /// Bounds of one state over [s, e].
+    pub fn range(&self, state: usize, s: f64, e: f64) -> Interval {
+        let n = self.n_coefficients;
+        let c = &self.coefficients[state * n..(state + 1) * n];
+        value_range(c, (s - self.start) / self.h, (e - self.start) / self.h)
+    }
+
     /// How high a power the polynomials have.
     pub fn degree(&self) -> usize {
         self.n_coefficients.saturating_sub(1)
@@ -137,6 +144,24 @@ impl Segment {
             *term = around(value, 0.0, size * (8 * n) as f64 * f64::EPSILON);
         }
     }
+}
+
+/// Bounds of the polynomial with coefficients `c`, lowest power first, over [from, to] of its argument: by value and rate at
+/// the middle, and a bound of the second rate.
+pub fn value_range(c: &[f64], from: f64, to: f64) -> Interval {
+    let (middle, radius) = (0.5 * (from + to), 0.5 * (to - from).abs());
+    let reach = from.abs().max(to.abs());
+    let (mut p, mut dp) = (0.0, 0.0);
+    let (mut size, mut slope, mut bend) = (0.0, 0.0, 0.0);
+    for &c in c.iter().rev() {
+        dp = dp * middle + p;
+        p = p * middle + c;
+        // Of the sum of |c_k| reach^k, and of its first two derivatives, half of the second.
+        bend = bend * reach + slope;
+        slope = slope * reach + size;
+        size = size * reach + c.abs();
+    }
+    around(p, (dp.abs() + bend * radius) * radius, size * (8 * c.len()) as f64 * f64::EPSILON)
 }
 
 /// Moves a polynomial's origin to `by` (repeated synthetic division).

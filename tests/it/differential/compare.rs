@@ -218,8 +218,8 @@ impl Observer for Writer {
         self.rows.push(Row {
             time: event.time,
             label: event.transition.into(),
-            agent: event.agent,
-            other: event.other,
+            agent: event.agent.number,
+            other: event.other.map(|other| other.number),
             modes: event.modes.map(|(from, to)| (from.into(), to.into())),
         });
         Ok(())

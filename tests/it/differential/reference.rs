@@ -735,7 +735,9 @@ fn collect(actions: &[Action], scope: &mut Scope<'_>, done: &mut Done) {
                 }
             }
             Action::Goto { .. } => {}
-            Action::Stop { .. } | Action::Draw { .. } => panic!("the generator does not write this"),
+            Action::Stop { .. } | Action::Draw { .. } | Action::Create(_) | Action::Destroy { .. } => {
+                panic!("the generator writes none of these")
+            }
         }
     }
 }

@@ -1,2 +1,1 @@
-import "other.hy"
 property p = always time >= 0

@@ -1,17 +1,16 @@
 param xs = [1, 2]
 agent Car(v: real) {
-  state x ~ Normal(0, 1), y = table("t.csv", "c", 3)
+  state x ~ Normal(0, 1), y = 0
   event braking
   link lead: Car = nearest o in other Car by o.x - x
   let crowd = count o in other Car: o.x > x
   let one = if lead then lead else self
   flow { x' = 1 y' = if exists o in other Car: o.x > x then 1 else 0 }
-  region Light { initial mode On { } }
   initial mode Go {
     initial mode Fast { }
     rate 0.1 -> Go
     on braking -> Go.history
-    when x > 1 { emit braking create Car(v = 1) destroy self x ~ Normal(0, 1) }
+    when x > 1 { emit braking x ~ Normal(0, 1) }
     when exists o in cars: o.x > 1 -> Go
   }
 }

@@ -149,7 +149,14 @@ fn settings(number: u64) -> Settings {
 
 /// The budget of a run.
 fn limits() -> Limits {
-    Limits { microsteps_max: 50, zeno_events: 50, steps_max: 200, guards_max: 5_000, pieces_max: 50 }
+    Limits {
+        microsteps_max: 50,
+        zeno_events: 50,
+        steps_max: 200,
+        agents_max: 200,
+        guards_max: 5_000,
+        pieces_max: 50,
+    }
 }
 
 fn refused(sources: &SourceMap, found: &[Diagnostic], fate: Fate) -> Fate {

@@ -2,16 +2,19 @@
 //!
 //! What a test expects follows from the reference by hand; flows are polynomials where only events matter.
 
+mod rule_01_links;
 mod rule_01_state;
 mod rule_02_arming;
 mod rule_03_instant;
 mod rule_04_micro_steps;
 mod rule_04_hierarchy;
+mod rule_04_regions;
 mod rule_05_writing;
 mod rule_06_start;
 mod rule_07_reset;
 mod rule_08_claims;
 mod rule_09_events;
+mod rule_10_lives;
 mod rule_11_time;
 mod rule_11_rate;
 mod rule_12_end;

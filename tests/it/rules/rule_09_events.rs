@@ -205,7 +205,7 @@ fn rule_09_without_from_all_types_with_the_event_are_heard() {
          agent C { discrete k = 0  hear: on e { k := 1 } }
          system { a = A()  b = B()  c = C() }  run { until 3 }",
     );
-    assert!(words.contains("HY0256"), "{words}");
+    assert!(words.contains("HY0237"), "{words}");
 }
 
 #[test]

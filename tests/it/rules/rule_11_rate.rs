@@ -190,7 +190,7 @@ fn rule_11_a_rate_is_never_negative() {
     simulate("agent A { state x = 1  discrete n: int = 0  flow { x' = -1 }  go: rate 0.001*x when x > 0 { n := n + 1 } }
               system { a = A() }  run { until 3 }");
     let words = refused("agent A { discrete n: int = 0  go: rate 2 - 3 { n := n + 1 } }");
-    assert!(words.contains("HY0249"), "{words}");
+    assert!(words.contains("HY0219"), "{words}");
     let words = refused("agent A { discrete n: int = 0  go: rate 2 [s] { n := n + 1 } }");
     assert!(words.contains("HY0231"), "{words}");
 }

@@ -2,7 +2,7 @@
 
 use hyc::runtime::paper::Form;
 
-use super::forms::{TOLERANCE, by, same};
+use super::forms::{TOLERANCE, by, difference, same};
 use crate::harness::{Ended, near};
 
 /// Numbers that look random, of an agent's index, between 0 and 1.
@@ -25,6 +25,28 @@ fn a_ring_road_whose_end_is_its_begin() {
         300,
     );
     assert!(both.plain.times("Car.turn").len() > 5);
+}
+
+/// What a car has run ahead beyond the instant at which it is turned says nothing of where it gets to.
+#[test]
+fn cars_that_are_turned_while_they_have_run_ahead_are_met_in_time() {
+    for k in [1, 2] {
+        let text = format!(
+            "{HASH}
+             agent Car(i: int) {{
+               state x = 4*mod(i, 10) - 18, y = 4*floor(i/10) - 18, th = 6.28*hash(i, {k})
+               discrete v = 0.2 + 0.8*hash(i, 1), w = 2 + 4*hash(i, 2)
+               flow {{ x' = v*cos(th)  y' = v*sin(th)  th' = 0.5*w*sin(w*time + i) }}
+               when abs(x) >= 20 or abs(y) >= 20 {{ th := atan2(-y, -x) }} }}
+             interaction Bump(a: Car, b: Car) {{
+               pair: when (a.x - b.x)^2 + (a.y - b.y)^2 <= 1 {{
+                 a.th := atan2(a.y - b.y, a.x - b.x)  b.th := atan2(b.y - a.y, b.x - a.x) }} }}
+             system {{ cars = Car[100](i = index) }}  run {{ until 40 }}"
+        );
+        let [fast, plain] = [Form::Fast, Form::Plain].map(|form| by(&text, form, 1e-6));
+        assert!(plain.events.len() > 200);
+        assert_eq!(difference(&fast, &plain, f64::INFINITY), None);
+    }
 }
 
 #[test]

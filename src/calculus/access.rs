@@ -1,0 +1,87 @@
+//! What is asked of a system in more than one place: its lists of actions, and who is made and removed by them.
+
+use crate::calculus::system::{ActionList, ActionStep, AgentSystem, Birth, FunctionId, Source, System};
+
+impl System {
+    /// All lists of actions of agents, with their types; then those of interactions.
+    pub fn action_lists(&self) -> impl Iterator<Item = &ActionList> {
+        let of_types = self.types.iter().flat_map(|ty| {
+            let modes = ty.modes.iter().flat_map(|mode| [&mode.entry, &mode.exit]);
+            modes.chain(ty.transitions.iter().map(|transition| &transition.actions))
+        });
+        let pairs = self.interactions.iter().flat_map(|interaction| &interaction.transitions);
+        of_types.chain(pairs.map(|pair| &pair.transition.actions))
+    }
+}
+
+impl ActionList {
+    /// Whether it removes agents.
+    pub fn destroys(&self) -> bool {
+        destroys(&self.steps)
+    }
+
+    /// All that makes agents.
+    pub fn births(&self) -> Vec<&Birth> {
+        let mut found = Vec::new();
+        add_births(&self.steps, &mut found);
+        found
+    }
+}
+
+fn destroys(steps: &[ActionStep]) -> bool {
+    steps.iter().any(|step| match step {
+        ActionStep::Destroy { .. } => true,
+        ActionStep::If { then, otherwise, .. } => destroys(then) || destroys(otherwise),
+        ActionStep::Assign { .. }
+        | ActionStep::Draw { .. }
+        | ActionStep::Emit { .. }
+        | ActionStep::Goto { .. }
+        | ActionStep::Stop { .. }
+        | ActionStep::Create(_) => false,
+    })
+}
+
+fn add_births<'s>(steps: &'s [ActionStep], found: &mut Vec<&'s Birth>) {
+    for step in steps {
+        match step {
+            ActionStep::Create(birth) => found.push(birth),
+            ActionStep::If { then, otherwise, .. } => {
+                add_births(then, found);
+                add_births(otherwise, found);
+            }
+            ActionStep::Assign { .. }
+            | ActionStep::Draw { .. }
+            | ActionStep::Emit { .. }
+            | ActionStep::Goto { .. }
+            | ActionStep::Stop { .. }
+            | ActionStep::Destroy { .. } => {}
+        }
+    }
+}
+
+impl Source {
+    /// The functions that say what it is.
+    pub fn functions(&self) -> &[FunctionId] {
+        match self {
+            Source::Number(function) => std::slice::from_ref(function),
+            Source::Draw { parameters, .. } => parameters,
+        }
+    }
+}
+
+impl AgentSystem {
+    /// A mode and those around it, inner first.
+    pub fn around(&self, mode: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::successors(Some(mode), |&mode| self.modes[mode].parent)
+    }
+
+    /// The region that a mode is in; none for the root of an agent with regions.
+    pub fn region_of(&self, mode: usize) -> Option<usize> {
+        self.around(mode).find(|around| self.regions.contains(around))
+    }
+
+    /// Whether a mode is another one, or inside it.
+    pub fn is_inside(&self, mode: usize, other: usize) -> bool {
+        self.around(mode).any(|around| around == other)
+    }
+}

@@ -1,0 +1,114 @@
+//! `hyc plot`: a picture of a run, from a table that it wrote or from a model that is run for it.
+
+use std::fs;
+use std::path::Path;
+
+use super::arguments::PlotArguments;
+use super::input::{load, name_of, reason};
+use super::limits::Limits;
+use super::run::{RecordAll, cast_of, compile, settings_of, simulate};
+use super::terminal::{say, tell};
+use super::watch::watch;
+use super::{Exit, Refused};
+use crate::base::Diagnostic;
+use crate::model;
+use crate::output::Tables;
+use crate::picture::{Form, Recording, Traces, View, plot as draw};
+use crate::runtime::observe::End;
+use crate::runtime::{Algorithm, paper};
+
+/// The longest table that is read, bytes.
+const TABLE_MAX: u64 = 1 << 30;
+
+/// Draws, and says where the picture is.
+pub(super) fn plot(arguments: &PlotArguments) -> Result<Exit, Refused> {
+    let input = &arguments.input;
+    let traces = if input.extension().is_some_and(|ending| ending == "hy") {
+        match traces_of_model(arguments)? {
+            Ok(traces) => traces,
+            Err(exit) => return Ok(exit),
+        }
+    } else {
+        traces_of_table(input)?
+    };
+    let view = view(arguments, &traces)?;
+    let out = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| Path::new(input.file_stem().unwrap_or_default()).with_extension("svg"));
+    let form = match out.extension().and_then(|ending| ending.to_str()) {
+        Some("svg") => Form::Svg,
+        Some("png") => Form::Png,
+        Some(_) | None => return Err(format!("`{}`: pictures are `.svg` or `.png`", out.display())),
+    };
+    let title = name_of(Path::new(input.file_name().unwrap_or_default()));
+    let bytes = draw(&traces, &view, &title, form)?;
+    fs::write(&out, bytes)
+        .map_err(|error| format!("cannot write `{}`: {}", out.display(), reason(&error)))?;
+    say(&format!("wrote {}\n", out.display()))?;
+    Ok(Exit::Fine)
+}
+
+fn traces_of_table(path: &Path) -> Result<Traces, Refused> {
+    let refuse = |why: &str| format!("cannot read `{}`: {why}", path.display());
+    let size = fs::metadata(path).map_err(|error| refuse(&reason(&error)))?.len();
+    if size > TABLE_MAX {
+        return Err(refuse("it is larger than 1 GiB; record less often"));
+    }
+    let text = fs::read_to_string(path).map_err(|error| refuse(&reason(&error)))?;
+    Traces::read(&text).map_err(|why| refuse(&why))
+}
+
+/// Runs the model; no file that it names is written.
+fn traces_of_model(arguments: &PlotArguments) -> Result<Result<Traces, Exit>, Refused> {
+    let limits = Limits::new(&[])?;
+    let loaded = load(&arguments.input, &settings_of(&arguments.settings, None, RecordAll::No, &limits))?;
+    tell(&loaded.sources, &loaded.diagnostics);
+    let (exit, sources) = (loaded.exit(), loaded.sources);
+    let Some(model) = loaded.model else { return Ok(Err(exit)) };
+    let mut warnings: Vec<Diagnostic> = Vec::new();
+    let mut program = match compile(&model, Default::default(), &mut warnings) {
+        Ok(program) => program,
+        Err(diagnostics) => {
+            tell(&sources, &diagnostics);
+            return Ok(Err(Exit::ModelErrors));
+        }
+    };
+    let (record, watched) = watch(&model, &program)?;
+    let number = program.run.records.len();
+    program.run.records.push(record);
+    let (cast, diagrams) = (cast_of(&program), model::diagrams(&model, &sources));
+    let mut recording = Recording::new(&cast, &watched.types, &diagrams, number);
+    let mut tables = Tables::new(&cast);
+    tables.also(&mut recording);
+    let algorithm = Algorithm::Masim(paper::Form::Fast);
+    let outcome = simulate(algorithm, &program, &limits.run, &mut tables, false)?;
+    drop(tables);
+    if let End::Error(diagnostic) = &outcome.end {
+        // what has been computed until then is drawn
+        tell(&sources, std::slice::from_ref(diagnostic));
+    }
+    recording.close();
+    let labels = watched.columns.iter().map(|column| match &column.unit {
+        Some(unit) => format!("{}, {unit}", column.name),
+        None => column.name.clone(),
+    });
+    Ok(Ok(Traces::of(&recording, &labels.collect::<Vec<_>>())))
+}
+
+/// What `--xy` and `--columns` ask for; without them everything over time.
+fn view(arguments: &PlotArguments, traces: &Traces) -> Result<View, Refused> {
+    let find =
+        |name: &String| {
+            let known = |column: &String| column == name || column.split(',').next() == Some(name.as_str());
+            traces.columns.iter().position(known).ok_or_else(|| {
+                format!("there is no column `{name}`; there are {}", traces.columns.join("; "))
+            })
+        };
+    match &arguments.xy[..] {
+        [] if arguments.columns.is_empty() => Ok(View::OverTime((0..traces.columns.len()).collect())),
+        [] => Ok(View::OverTime(arguments.columns.iter().map(find).collect::<Result<_, _>>()?)),
+        [across, up] => Ok(View::Plane(find(across)?, find(up)?)),
+        _ => Err("`--xy` takes two columns: `--xy x,y`".into()),
+    }
+}

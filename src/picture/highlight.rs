@@ -1,0 +1,114 @@
+//! A model's text as HTML, with what the words are marked: comments, strings, numbers, units, keywords.
+
+use super::modes_svg::escaped;
+use crate::syntax::keywords;
+
+/// The text in a `pre`.
+pub(super) fn highlighted(text: &str) -> String {
+    let keywords = keywords();
+    let mut html = String::from("<pre>");
+    let mut rest = text;
+    let mut before = Class::Other;
+    while !rest.is_empty() {
+        let (length, class) = token(rest, before, &keywords);
+        let (part, behind) = rest.split_at(length);
+        match class.mark() {
+            Some(mark) => html += &format!("<span class=\"{mark}\">{}</span>", escaped(part)),
+            None => html += &escaped(part),
+        }
+        if class != Class::Space {
+            before = class;
+        }
+        rest = behind;
+    }
+    html + "</pre>"
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Class {
+    Comment,
+    Text,
+    Number,
+    Unit,
+    Keyword,
+    /// `real`, `int`, `bool`: a unit may follow.
+    Type,
+    Space,
+    Other,
+}
+
+impl Class {
+    fn mark(self) -> Option<&'static str> {
+        match self {
+            Class::Comment => Some("c"),
+            Class::Text => Some("s"),
+            Class::Number => Some("n"),
+            Class::Unit => Some("u"),
+            Class::Keyword | Class::Type => Some("k"),
+            Class::Space | Class::Other => None,
+        }
+    }
+}
+
+/// The length of what comes first, and what it is; `before` is what stood before it.
+fn token(text: &str, before: Class, keywords: &[String]) -> (usize, Class) {
+    let length = |fits: &dyn Fn(char) -> bool| text.find(|c| !fits(c)).unwrap_or(text.len());
+    let first = text.chars().next().unwrap_or(' ');
+    if text.starts_with("//") {
+        return (text.find('\n').unwrap_or(text.len()), Class::Comment);
+    }
+    if first == '"' {
+        return (text[1..].find(['"', '\n']).map_or(text.len(), |end| end + 2), Class::Text);
+    }
+    if first == '[' && matches!(before, Class::Number | Class::Type) {
+        return (text.find([']', '\n']).map_or(text.len(), |end| end + 1), Class::Unit);
+    }
+    if first.is_whitespace() {
+        return (length(&char::is_whitespace), Class::Space);
+    }
+    if first.is_ascii_digit() {
+        let mantissa = length(&|c| c.is_ascii_digit() || c == '.');
+        let exponent = text[mantissa..].strip_prefix(['e', 'E']).map_or(0, |tail| {
+            let signed = tail.strip_prefix(['+', '-']).unwrap_or(tail);
+            let digits = signed.find(|c: char| !c.is_ascii_digit()).unwrap_or(signed.len());
+            if digits == 0 { 0 } else { 1 + tail.len() - signed.len() + digits }
+        });
+        return (mantissa + exponent, Class::Number);
+    }
+    if first.is_alphabetic() || first == '_' {
+        let end = length(&|c| c.is_alphanumeric() || c == '_');
+        let class = match &text[..end] {
+            "real" | "int" | "bool" => Class::Type,
+            word if keywords.iter().any(|keyword| keyword == word) => Class::Keyword,
+            _ => Class::Other,
+        };
+        return (end, class);
+    }
+    (first.len_utf8(), Class::Other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_marked_as_what_they_are() {
+        let html = highlighted("when x <= 2.5e-3 [m] // \"so\"\nparam v: real [m/s] = cars[1] \"a // b\"");
+        assert_eq!(
+            html,
+            "<pre><span class=\"k\">when</span> x &lt;= <span class=\"n\">2.5e-3</span> <span class=\"u\">[m]</span> \
+             <span class=\"c\">// &quot;so&quot;</span>\n<span class=\"k\">param</span> v: <span class=\"k\">real</span> \
+             <span class=\"u\">[m/s]</span> = cars[<span class=\"n\">1</span>] <span class=\"s\">&quot;a // b&quot;</span></pre>"
+        );
+    }
+
+    #[test]
+    fn nothing_is_lost() {
+        for text in ["\"open", "x[", "2e", "2e+", "é // ü", "1 [m", "é\"ü\nx"] {
+            let html = highlighted(text);
+            let parts: String =
+                html.split('<').map(|part| part.split_once('>').map_or(part, |(_, text)| text)).collect();
+            assert_eq!(parts.replace("&quot;", "\""), text);
+        }
+    }
+}

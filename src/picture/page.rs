@@ -1,0 +1,130 @@
+//! The page of a run: one HTML file that holds everything it needs, and asks no network for anything.
+//!
+//! Samples lie in it as base64 of 32-bit numbers, column by column, agent by agent. Styles and scripts are those of `page/`;
+//! charts are drawn by uPlot, which lies in `page/vendor/` with its licence.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::{Value, json};
+
+use super::highlight::highlighted;
+use super::modes_svg::{Theme, escaped, modes_svg};
+use super::palette::{COLOURS, colour, hex};
+use super::recording::Recording;
+use crate::model::Diagram;
+
+const TEMPLATE: &str = include_str!("page/page.html");
+const STYLE: &str = include_str!("page/page.css");
+const SCRIPT: &str = include_str!("page/page.js");
+const UPLOT_SCRIPT: &str = include_str!("page/vendor/uPlot.iife.min.js");
+const UPLOT_STYLE: &str = include_str!("page/vendor/uPlot.min.css");
+
+/// A run, for its page.
+pub struct Scene<'a> {
+    /// The model's name.
+    pub title: &'a str,
+    /// Its text.
+    pub source: &'a str,
+    /// The modes of its agent types.
+    pub diagrams: &'a [Diagram],
+    /// What happened; closed.
+    pub recording: &'a Recording<'a>,
+    /// The columns of the record.
+    pub columns: &'a [Shown],
+    /// The columns that are shown across and up; none: time.
+    pub plane: [Option<usize>; 2],
+    /// How it ended and what it took, as text.
+    pub summary: &'a str,
+}
+
+/// A column of the record, for people.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shown {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: Option<String>,
+    /// Whether it is worth a chart over time.
+    pub varies: Varies,
+}
+
+/// Whether a column changes during a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Varies {
+    /// By flow or by events.
+    InTime,
+    /// Only from agent to agent; a whole number.
+    AmongAgents,
+}
+
+/// The page.
+pub fn page(scene: &Scene<'_>) -> String {
+    let data = data(scene).to_string().replace('<', "\\u003c");
+    let mut html = String::with_capacity(data.len() + 200_000);
+    for (k, part) in TEMPLATE.split('@').enumerate() {
+        if k % 2 == 0 {
+            html += part;
+            continue;
+        }
+        match part {
+            "TITLE" => html += &escaped(scene.title),
+            "CSS" => html += STYLE,
+            "UPLOT_CSS" => html += UPLOT_STYLE,
+            "UPLOT_JS" => html += UPLOT_SCRIPT,
+            "JS" => html += SCRIPT,
+            "MODES" => html += &modes_svg(scene.diagrams, Theme::Page),
+            "SOURCE" => html += &highlighted(scene.source),
+            "DATA" => html += &data,
+            other => unreachable!("the template has no place called {other}"),
+        }
+    }
+    html
+}
+
+fn data(scene: &Scene<'_>) -> Value {
+    let recording = scene.recording;
+    let (ending, summary) = scene.summary.split_once('\n').unwrap_or((scene.summary, ""));
+    let [across, up] = scene.plane.map(|column| column.map_or(-1, |column| column as i64));
+    let columns = scene.columns.iter().enumerate().map(|(k, shown)| column(recording, k, shown));
+    let events = recording.events.iter().map(|event| {
+        let number = |place: Option<usize>| place.map_or(-1, |place| place as i64);
+        let (from, to) = (event.modes.map(|modes| modes.0), event.modes.map(|modes| modes.1));
+        json!([event.time, event.transition, event.agent, number(event.other), number(from), number(to)])
+    });
+    let modes = recording.tracks.iter().flat_map(|track| &track.modes).flat_map(|mode| mode.to_le_bytes());
+    json!({
+        "ending": ending.split_once(": ").map_or(ending, |(_, ending)| ending),
+        "summary": summary,
+        "agents": recording.tracks.iter().map(|track| &track.name).collect::<Vec<_>>(),
+        "times": recording.times,
+        "columns": columns.collect::<Vec<_>>(),
+        "modes": STANDARD.encode(modes.collect::<Vec<u8>>()),
+        "modeNames": recording.modes,
+        "modeColours": (0..recording.modes.len()).map(|mode| hex(colour(mode))).collect::<Vec<_>>(),
+        "palette": COLOURS.map(hex),
+        "events": events.collect::<Vec<_>>(),
+        "nEvents": recording.n_events,
+        "transitions": recording.transitions,
+        "modePaths": recording.paths,
+        "across": across,
+        "up": up,
+    })
+}
+
+fn column(recording: &Recording<'_>, k: usize, shown: &Shown) -> Value {
+    let values = recording.tracks.iter().flat_map(|track| track.values.get(k).into_iter().flatten());
+    let label = match &shown.unit {
+        Some(unit) => format!("{}, {unit}", shown.name),
+        None => shown.name.clone(),
+    };
+    // where both columns of the plane have the same of these, a circle is drawn as one
+    let length =
+        shown.unit.clone().or_else(|| ["x", "y", "z"].contains(&&*shown.name).then(|| "plane".into()));
+    json!({
+        "label": label,
+        "length": length,
+        "chart": shown.varies == Varies::InTime,
+        "whole": shown.varies == Varies::AmongAgents,
+        "values": STANDARD.encode(values.flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>()),
+    })
+}

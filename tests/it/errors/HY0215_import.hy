@@ -1,0 +1,2 @@
+import "none/walker.hy"
+system { a = Walker() }

@@ -1,0 +1,5 @@
+agent A {
+  region Lamp { initial mode Off { after 1 -> On }  mode On { after 1 -> Off } }
+  initial mode Go { after 3 -> Stay }
+  mode Stay { after 3 -> Go }
+}

@@ -1,0 +1,4 @@
+agent A {
+  region Lamp { initial mode Off { after 1 -> Motion.Stay }  mode On { after 1 -> Off } }
+  region Motion { initial mode Go { after 3 -> Stay }  mode Stay { after 3 -> Go } }
+}

@@ -1,0 +1,1 @@
+agent A { state x = 0  flow { x' = table("wind.csv", "sped", time) } }

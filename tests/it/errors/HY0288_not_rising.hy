@@ -1,0 +1,1 @@
+agent A { state x = 0  flow { x' = table("jump.csv", "speed", time) } }

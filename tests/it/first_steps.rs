@@ -1,0 +1,110 @@
+//! Can somebody begin who has the program and nothing else? New models, completions, manual pages, colours.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn hyc(folder: &Path, words: &[&str]) -> Output {
+    plain(folder, words).output().unwrap()
+}
+
+/// The program in an environment that says nothing about colours.
+fn plain(folder: &Path, words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_hyc"));
+    command.args(words).current_dir(folder);
+    for name in ["NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE"] {
+        command.env_remove(name);
+    }
+    command
+}
+
+fn out(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn err(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+#[test]
+fn a_new_model_runs_without_a_warning() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = hyc(folder.path(), &["new", "robots"]);
+    assert!(made.status.success(), "{}", err(&made));
+    assert!(out(&made).contains("hyc run robots.hy"), "{}", out(&made));
+    let text = fs::read_to_string(folder.path().join("robots.hy")).unwrap();
+    assert!(text.starts_with("// robots.hy: ") && !text.contains("NAME"), "{text}");
+    let check = hyc(folder.path(), &["check", "robots.hy", "--deny", "warnings"]);
+    assert!(check.status.success(), "{}", err(&check));
+    let run = hyc(folder.path(), &["run", "robots.hy"]);
+    assert!(run.status.success() && err(&run).is_empty(), "{}", err(&run));
+    let events = fs::read_to_string(folder.path().join("robots_events.csv")).unwrap();
+    for label in ["Robot.left", "Robot.top", "Robot.rested", "Meet.pair"] {
+        assert!(events.contains(label), "no {label} in {events}");
+    }
+}
+
+#[test]
+fn a_new_model_overwrites_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("mine.hy"), "mine").unwrap();
+    let made = hyc(folder.path(), &["new", "mine.hy"]);
+    assert_eq!(made.status.code(), Some(2));
+    assert!(err(&made).contains("`mine.hy` is there already"), "{}", err(&made));
+    assert_eq!(fs::read_to_string(folder.path().join("mine.hy")).unwrap(), "mine");
+    for name in ["", "a/", "no/such/folder/x"] {
+        assert_eq!(hyc(folder.path(), &["new", name]).status.code(), Some(2), "{name}");
+    }
+}
+
+#[test]
+fn every_shell_gets_a_script_that_knows_the_commands() {
+    let folder = tempfile::tempdir().unwrap();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = out(&hyc(folder.path(), &["completions", shell]));
+        for word in ["run", "explain", "integrator", "stage"] {
+            assert!(script.contains(word), "{shell}: no {word}");
+        }
+    }
+    let script = hyc(folder.path(), &["completions", "bash"]).stdout;
+    fs::write(folder.path().join("hyc.bash"), script).unwrap();
+    let ask = "source ./hyc.bash; COMP_WORDS=(hyc sho); COMP_CWORD=1; _hyc hyc sho hyc; echo ${COMPREPLY[@]}";
+    match Command::new("bash").args(["-c", ask]).current_dir(folder.path()).output() {
+        Ok(answer) => assert_eq!(out(&answer).trim(), "show", "{}", err(&answer)),
+        Err(_) => eprintln!("skipped: there is no bash to ask"),
+    }
+}
+
+#[test]
+fn there_is_a_manual_page_for_the_program_and_for_each_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = out(&hyc(folder.path(), &["man"]));
+    assert!(page.contains(".TH hyc 1") && page.contains("Compile a model and simulate it"), "{page}");
+    for command in ["run", "compare", "check", "show", "explain", "new", "completions", "man"] {
+        let page = out(&hyc(folder.path(), &["man", command]));
+        assert!(page.contains(&format!(".TH hyc-{command} 1")), "{page}");
+        assert!(page.contains(".SH NAME") && page.contains(".SH OPTIONS"), "{page}");
+    }
+    let none = hyc(folder.path(), &["man", "sing"]);
+    assert_eq!(none.status.code(), Some(2));
+}
+
+#[test]
+fn colours_are_there_when_they_are_wanted_and_only_then() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("bad.hy"), "param x = y\n").unwrap();
+    let coloured = |words: &[&str], set: &[(&str, &str)]| {
+        let output = plain(folder.path(), words).envs(set.iter().copied()).output().unwrap();
+        assert!(err(&output).contains("HY0201"));
+        err(&output).contains('\x1b')
+    };
+    let check = ["check", "bad.hy"];
+    // nobody reads at a terminal here
+    assert!(!coloured(&check, &[]));
+    assert!(coloured(&check, &[("CLICOLOR_FORCE", "1")]));
+    assert!(!coloured(&check, &[("CLICOLOR_FORCE", "0")]));
+    assert!(!coloured(&check, &[("CLICOLOR_FORCE", "1"), ("NO_COLOR", "1")]));
+    assert!(coloured(&check, &[("CLICOLOR_FORCE", "1"), ("NO_COLOR", "")]));
+    assert!(coloured(&["check", "bad.hy", "--color", "always"], &[("NO_COLOR", "1")]));
+    assert!(!coloured(&["--color=never", "check", "bad.hy"], &[("CLICOLOR_FORCE", "1")]));
+}
