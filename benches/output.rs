@@ -9,7 +9,7 @@ use std::fs::File;
 use std::time::Instant;
 
 use hyc::output::{Cast, Column, Kind, Sink, Tables};
-use hyc::runtime::observe::{Cell, Observer, Row};
+use hyc::runtime::observe::{Cell, Observer, Row, Who};
 
 const AGENTS: usize = 1000;
 
@@ -41,7 +41,7 @@ fn main() {
             let time = (k / AGENTS) as f64 * 0.05;
             let cells = [Cell::Number(angle * 37.0), Cell::Number(1.0 - angle), Cell::Number(angle * 1e-3)];
             let mode = if angle < 0.9 { "Cruise" } else { "Brake" };
-            let row = Row { time, micro: 0, agent: k % AGENTS, mode, cells: &cells };
+            let row = Row { time, micro: 0, agent: Who { number: k % AGENTS, ty: 0 }, mode, cells: &cells };
             tables.sample(0, &row).unwrap();
             if k == rows / 10 {
                 early = memory();

@@ -1,5 +1,5 @@
-// multirate.hy: a fast oscillator follows a slow one, fifty times slower. Once it reads it continuously: then the two are
-// coupled, and step together. Once it samples it every `hold` and holds the sample: then each keeps its own clock.
+// multirate.hy: a fast oscillator follows a slow one, fifty times slower. Once it reads it continuously, from the dense output
+// of a leader that does not read it. Once it samples it every `hold` and holds the sample. Each keeps its own clock.
 // Shows what a flow that reads another agent costs, and what holding costs: an error of the size of `hold`.
 // In closed form: cosines of both frequencies; between two samples a cosine about the sample.
 
@@ -11,7 +11,7 @@ agent Slow {
   flow { x' = v  v' = -(1 [rad/s])^2*x }
 }
 
-agent Coupled(slow: Slow) {                  // reads slow.x: one group, one clock
+agent Coupled(slow: Slow) {                  // reads slow.x: a follower
   state y = 0, v: real [1/s] = 0
   flow { y' = v  v' = w^2*(slow.x - y) }
 }

@@ -143,12 +143,13 @@ pub fn roll_back(report: &mut Report, tick: &dyn Fn(&str)) {
         let (mut undone, mut all, mut long, mut rewritten) = (0, 0, 0, 0);
         for run in &runs {
             let mut steps: Vec<Vec<f64>> = vec![Vec::new(); 20];
-            run.rows.iter().for_each(|row| steps[row.agent].push(row.time));
+            run.rows.iter().for_each(|row| steps[row.agent.number].push(row.time));
             all += run.stats.steps;
             for event in &run.events {
                 let end = ((event.time / window).floor() + 1.0) * window;
                 for car in [Some(event.agent), event.other].into_iter().flatten() {
-                    let again = steps[car].iter().filter(|&&t| t > event.time && t <= end).count() as u64;
+                    let again =
+                        steps[car.number].iter().filter(|&&t| t > event.time && t <= end).count() as u64;
                     undone += again;
                     long += u64::from(again > 1);
                     rewritten += 1;

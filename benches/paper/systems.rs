@@ -45,23 +45,25 @@ fn location(report: &mut Report) {
     for ball in 0..BALLS {
         let over = 0.1f64.powi(ball as i32 + 1);
         let (middle, half) = ((5.0 + over).sqrt() / 5f64.sqrt(), (over / 5.0).sqrt());
-        let events: Vec<f64> = found.events.iter().filter(|e| e.agent == ball).map(|e| e.time).collect();
+        let events: Vec<f64> =
+            found.events.iter().filter(|e| e.agent.number == ball).map(|e| e.time).collect();
         let errors = events.iter().zip([middle - half, middle + half]).map(|(t, exact)| (t - exact).abs());
-        let ends = flights.rows.iter().filter(|row| row.agent == ball && row.cells[0] >= 5.0).count();
-        let others =
-            published.each_ref().map(|run| run.events.iter().filter(|event| event.agent == ball).count());
+        let ends = flights.rows.iter().filter(|row| row.agent.number == ball && row.cells[0] >= 5.0).count();
+        let others = published
+            .each_ref()
+            .map(|run| run.events.iter().filter(|event| event.agent.number == ball).count());
         let _ = writeln!(
             text,
             "| {over:.0e} | {:.1e} | {} | {:.0e} | {ends} of {} | {} | {} |",
             2.0 * half,
             events.len(),
             errors.fold(0.0, f64::max),
-            flights.rows.iter().filter(|row| row.agent == ball).count() - 1,
+            flights.rows.iter().filter(|row| row.agent.number == ball).count() - 1,
             others[0],
             others[1]
         );
     }
-    let short = found.events.iter().filter(|event| event.agent == BALLS).count();
+    let short = found.events.iter().filter(|event| event.agent.number == BALLS).count();
     let _ = write!(
         text,
         "\nOf the ball that stays 5e-6 m below the bar: {short} events. Roots that could be neither excluded nor isolated: {}.",
@@ -86,7 +88,9 @@ fn multirate(report: &mut Report) {
             |name: &str| run.stats.types.iter().filter(|ty| ty.name == name).map(|ty| ty.steps).sum::<u64>();
         let (slow, coupled, held) = (steps("Slow"), steps("Coupled"), steps("Held"));
         // Agents in the order of the model: one_clock, led, own_clocks, alone; columns x, v, y.
-        let y = |agent: usize| run.rows.iter().filter(move |row| row.agent == agent).map(|row| row.cells[2]);
+        let y = |agent: usize| {
+            run.rows.iter().filter(move |row| row.agent.number == agent).map(|row| row.cells[2])
+        };
         let error = y(0).zip(y(2)).map(|(one, own)| (one - own).abs()).fold(0.0, f64::max);
         let _ =
             writeln!(text, "| {hold} | {coupled} | {coupled} | {} | {held} | {error:.4} |", slow - coupled);
@@ -137,7 +141,7 @@ fn aircraft(report: &mut Report) {
             &mut shipped(include_str!("../../models/aircraft.hy"), &given),
             Algorithm::Masim(Form::Plain),
         );
-        let at = |agent: usize| run.rows.iter().filter(move |row| row.agent == agent);
+        let at = |agent: usize| run.rows.iter().filter(move |row| row.agent.number == agent);
         let distance =
             at(0).zip(at(1)).map(|(a, b)| (a.cells[0] - b.cells[0]).hypot(a.cells[1] - b.cells[1]));
         let of = |name: &str| {

@@ -22,7 +22,7 @@ struct Step {
 /// The steps in the order in which they are taken: the car that lags first.
 fn steps(run: &Measured, until: f64) -> Vec<Step> {
     let of = |car: usize| {
-        let rows = run.rows.iter().filter(|row| row.agent == car && row.time <= until);
+        let rows = run.rows.iter().filter(|row| row.agent.number == car && row.time <= until);
         rows.map(|row| (row.time, row.cells[0], row.cells[1])).collect::<Vec<_>>()
     };
     let cars = [of(0), of(1)];
@@ -63,7 +63,7 @@ pub fn figures(report: &mut Report) {
 
 fn draw(first: &str, second: &str, run: &Measured, steps: &[Step], until: f64) {
     let path = |car: usize| {
-        let rows = run.rows.iter().filter(|row| row.agent == car && row.time <= until);
+        let rows = run.rows.iter().filter(|row| row.agent.number == car && row.time <= until);
         rows.map(|row| (row.cells[0], row.cells[1])).collect::<Vec<_>>()
     };
     let numbered = |of: &dyn Fn(&Step) -> f64| {
@@ -121,7 +121,7 @@ fn tell(report: &mut Report, name: &str, event: Option<f64>, steps: &[Step], mas
     let until = of_masim.unwrap_or(f64::INFINITY);
     let steps_of_masim: usize = (0..2)
         .map(|car| {
-            let rows = masim.rows.iter().filter(|row| row.agent == car && row.time <= until);
+            let rows = masim.rows.iter().filter(|row| row.agent.number == car && row.time <= until);
             let mut times: Vec<f64> = rows.map(|row| row.time).collect();
             // An event has two rows; the first row is where the car starts.
             times.dedup();

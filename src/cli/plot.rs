@@ -78,7 +78,7 @@ fn traces_of_model(arguments: &PlotArguments) -> Result<Result<Traces, Exit>, Re
     let number = program.run.records.len();
     program.run.records.push(record);
     let (cast, diagrams) = (cast_of(&program), model::diagrams(&model, &sources));
-    let mut recording = Recording::new(&cast, &watched.types, &diagrams, number);
+    let mut recording = Recording::new(&cast, &diagrams, number);
     let mut tables = Tables::new(&cast);
     tables.also(&mut recording);
     let algorithm = Algorithm::Masim(paper::Form::Fast);

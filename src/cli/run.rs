@@ -13,7 +13,7 @@ use super::refusal::{refuse_aggregates, refuse_endless, refuse_engine};
 use super::sinks::{Sinks, prepare_folder};
 use super::terminal::{complain, say, say_aside, tell};
 use super::warnings::Levels;
-use super::watch::{Watched, watch};
+use super::watch::watch;
 use super::{Exit, Refused, claims};
 use crate::base::{Diagnostic, SourceMap};
 use crate::calculus;
@@ -74,8 +74,8 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     let diagrams = model::diagrams(&model, &sources);
     let n_records = program.run.records.len();
     let mut recording = None;
-    if let Some(Watched { types, .. }) = &watched {
-        recording = Some(Recording::new(&cast, types, &diagrams, n_records));
+    if watched.is_some() {
+        recording = Some(Recording::new(&cast, &diagrams, n_records));
     }
     let (mut tables, stats_sink) = open_outputs(arguments, &program, &cast, &sources, &mut sinks)?;
     program.run.records.extend(record);

@@ -17,8 +17,6 @@ const PLACES: usize = 12;
 pub(super) struct Watched {
     pub(super) columns: Vec<Shown>,
     pub(super) plane: [Option<usize>; 2],
-    /// The type of each agent.
-    pub(super) types: Vec<usize>,
 }
 
 /// A record of all agents, to be added to those of the model, and what it holds.
@@ -40,8 +38,7 @@ pub(super) fn watch(model: &Model, program: &Program) -> Result<(Record, Watched
         file: None,
         span: Span::default(),
     };
-    let types = model.population.agents.iter().map(|agent| agent.ty.index()).collect();
-    Ok((record, Watched { plane: plane(&shown), columns: shown, types }))
+    Ok((record, Watched { plane: plane(&shown), columns: shown }))
 }
 
 /// A column of the page's record.

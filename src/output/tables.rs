@@ -19,7 +19,7 @@ const WAIT: Duration = Duration::from_secs(1);
 /// So many rows are timed, then one of as many.
 const TIMED: u64 = 64;
 
-/// The observer that writes tables. Begin with [`Tables::new`], add what is wanted, end with [`Tables::flush`].
+/// The observer that writes tables. Begin with [`Tables::new`], add what is wanted, end with [`Tables::finish`].
 pub struct Tables<'a> {
     cast: &'a Cast,
     event_log: Option<EventLog>,

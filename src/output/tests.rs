@@ -313,7 +313,7 @@ fn a_summary_lists_what_fired_and_what_was_written() {
     assert_eq!(
         summary(&report),
         "models/cars.hy: ended at t = 12.5 s\n\
-         \x20 3 agents, 7 events, 40 steps (1 rejected)\n\
+         \x20 3 agents (2 created, 1 destroyed), 7 events, 40 steps (1 rejected)\n\
          \x20   Bump.pair  5  ########################\n\
          \x20   Car.left   2  ##########\n\
          \x20 busiest    fast (6 events), cars[0] (1 event)\n\

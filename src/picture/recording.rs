@@ -17,8 +17,6 @@ pub struct Recording<'a> {
     cast: &'a Cast,
     /// The number of the record that is kept; its samples are at the same times for all agents.
     record: usize,
-    /// The type of each agent that is there at t = 0.
-    types: &'a [usize],
     numbers: BTreeMap<(usize, String), u16>,
     /// All modes that agents can be in, by number, as `type: path`.
     pub modes: Vec<String>,
@@ -64,7 +62,7 @@ pub struct Happened {
 
 impl<'a> Recording<'a> {
     /// Nothing yet. Modes have the numbers of the leaves of the diagrams, which are those of their colours.
-    pub fn new(cast: &'a Cast, types: &'a [usize], diagrams: &[Diagram], record: usize) -> Self {
+    pub fn new(cast: &'a Cast, diagrams: &[Diagram], record: usize) -> Self {
         let mut numbers = BTreeMap::new();
         let mut modes = Vec::new();
         for (ty, diagram) in diagrams.iter().enumerate() {
@@ -78,7 +76,7 @@ impl<'a> Recording<'a> {
             }
         }
         let (times, tracks, events, transitions, paths) = Default::default();
-        Self { cast, record, types, numbers, modes, times, tracks, events, n_events: 0, transitions, paths }
+        Self { cast, record, numbers, modes, times, tracks, events, n_events: 0, transitions, paths }
     }
 
     /// Gives every track a value for every time.

@@ -19,6 +19,7 @@ pub struct Way {
 
 /// The steps beyond the clock, the first of them first.
 #[derive(Clone, Debug, Default)]
+#[expect(clippy::box_collection, reason = "one word in every agent: few are followed")]
 pub struct Ahead(Option<Box<VecDeque<Way>>>);
 
 impl Ahead {

@@ -85,14 +85,18 @@ fn reference(seed: usize, n_gates: usize) -> (Vec<Happening>, Vec<Dot>) {
             let inside = dots.iter().filter(|dot| dot.x(now) <= RANGE).map(|dot| dot.number);
             let inside: Vec<usize> = inside.collect();
             dots.push(Dot { number, born: now, v, hits: 0 });
-            for other in inside {
-                meet((other, number), now, &mut dots, &mut met, &mut log);
+            // each of the two is once the first: the actions are not the same when they change places
+            let pairs = inside.iter().map(|&other| (other, number));
+            for pair in pairs.clone().chain(pairs.map(|(other, number)| (number, other))) {
+                meet(pair, now, &mut dots, &mut met, &mut log);
             }
         } else if now == leave.0 {
             log.push((now, format!("Dot.leave Dot#{}", leave.1)));
             dots.retain(|dot| dot.number != leave.1);
         } else {
-            meet(hit.1, now, &mut dots, &mut met, &mut log);
+            let (a, b) = hit.1;
+            meet((a, b), now, &mut dots, &mut met, &mut log);
+            meet((b, a), now, &mut dots, &mut met, &mut log);
         }
     }
 }

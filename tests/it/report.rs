@@ -61,10 +61,10 @@ fn a_page_holds_the_events_and_asks_for_nothing() {
 #[test]
 fn a_report_beside_a_run_changes_no_event() {
     let folder = tempfile::tempdir().unwrap();
-    for name in ["two_cars.hy", "highway.hy", "ball.hy"] {
+    for (name, until) in [("two_cars.hy", "12"), ("highway.hy", "2.2"), ("ball.hy", "2.2")] {
         let path = model(name);
         let path = path.to_str().unwrap();
-        let quiet = ["run", path, "-q", "--until", "2.2"];
+        let quiet = ["run", path, "-q", "--until", until];
         hyc(
             folder.path(),
             &[&quiet[..], &["-o", "a", "--events", "without.csv", "--final", "f1.csv"]].concat(),
