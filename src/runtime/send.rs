@@ -115,7 +115,7 @@ impl Engine<'_, '_> {
         span: Span,
     ) -> Result<f64, Failure> {
         let value = self.number(function, rows);
-        if value >= 0.0 && value < f64::INFINITY {
+        if (0.0..f64::INFINITY).contains(&value) {
             return Ok(value);
         }
         let blame = self.blame(function, rows.frame, rows.slots, rows.own);
