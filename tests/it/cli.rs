@@ -193,7 +193,6 @@ fn wrong_usage_ends_with_2_and_says_what_is_wrong() {
         (&["check", "ball.hy", "--deny", "HY9999"], "no warning `HY9999`"),
         (&["check", "ball.hy", "--allow", "warnings"], "no warning `warnings`"),
         (&["run", "ball.hy", "--allow", "HY06"], "no warning `HY06`"),
-        (&["fmt", "ball.hy"], "not built yet"),
         (&["explain", "HY9999"], "no code `HY9999`"),
         (&["show", "ball.hy", "--stage", "soup"], "system"),
     ];

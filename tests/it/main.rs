@@ -39,6 +39,7 @@ mod paper;
 mod compare;
 mod differential;
 mod draws;
+mod systems_biology;
 mod units;
 mod robust;
 mod chains;
