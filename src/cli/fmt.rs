@@ -34,7 +34,9 @@ fn fmt_one(path: &Path, check: bool) -> Result<Exit, Refused> {
     };
     let name = path.display();
     if !syntax::same(&text, &laid_out) {
-        return Err(format!("`{name}` is left as it is: laid out, it would mean something else; please report this"));
+        return Err(format!(
+            "`{name}` is left as it is: laid out, it would mean something else; please report this"
+        ));
     }
     let changes = laid_out != text;
     match (check, path.to_str()) {
@@ -43,8 +45,9 @@ fn fmt_one(path: &Path, check: bool) -> Result<Exit, Refused> {
             return Ok(Exit::ModelErrors);
         }
         (false, Some("-")) => say(&laid_out)?,
-        (false, _) if changes => fs::write(path, laid_out)
-            .map_err(|error| format!("cannot write `{name}`: {}", reason(&error)))?,
+        (false, _) if changes => {
+            fs::write(path, laid_out).map_err(|error| format!("cannot write `{name}`: {}", reason(&error)))?
+        }
         (true | false, _) => {}
     }
     Ok(Exit::Fine)

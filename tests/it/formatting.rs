@@ -69,7 +69,19 @@ fn samples_and_generated_models_keep_their_meaning() {
 
 /// The text with blanks, empty lines, comments and `;` at random between its words.
 fn scattered(dice: &mut Dice, text: &str) -> String {
-    let blanks = [" ", "  ", "\t", "\n", "\n\n\n", " ;\n", " // c\n", "\n  // ä ∞ \r\n\n", "//\n//x\n", "\r\n", "\n\n// d\n\n"];
+    let blanks = [
+        " ",
+        "  ",
+        "\t",
+        "\n",
+        "\n\n\n",
+        " ;\n",
+        " // c\n",
+        "\n  // ä ∞ \r\n\n",
+        "//\n//x\n",
+        "\r\n",
+        "\n\n// d\n\n",
+    ];
     let mut scattered = String::new();
     for token in cut(text) {
         if dice.percent(8) {
@@ -111,7 +123,8 @@ fn one_word_a_line_settles_at_once() {
             unit = if word == "[" { unit + 1 } else { unit };
             column.push_str(word);
             unit -= usize::from(word == "]");
-            let joined = unit > 0 || word.starts_with("//") || words.get(k + 1).is_some_and(|next| next == "[");
+            let joined =
+                unit > 0 || word.starts_with("//") || words.get(k + 1).is_some_and(|next| next == "[");
             column.push_str(if joined && !word.starts_with("//") { " " } else { "\n" });
         }
         if syntax::parse(FileId(0), &column).is_ok() {
@@ -129,7 +142,10 @@ fn ends_of_lines_and_of_the_file() {
     assert_eq!(format("// only this"), "// only this\n");
     assert_eq!(format("\n\n// a\n\n\n\n// b  \n\n"), "// a\n\n// b\n");
     assert_eq!(format("param a = 1"), "param a = 1\n");
-    assert_eq!(format("\u{FEFF}param  a=1 // Größe\r\nparam b=2"), "param a = 1  // Größe\r\nparam b = 2\r\n");
+    assert_eq!(
+        format("\u{FEFF}param  a=1 // Größe\r\nparam b=2"),
+        "param a = 1  // Größe\r\nparam b = 2\r\n"
+    );
     assert_eq!(format("param a = 1 // x\n\n\n// y\n//z"), "param a = 1  // x\n\n// y\n//z\n");
 }
 

@@ -72,7 +72,10 @@ fn align_words(lines: &mut [Line<'_>]) {
             *pad == 0 || end + pad <= WIDTH
         });
         if fits {
-            members.iter().zip(pads).for_each(|(&(line, piece), pad)| lines[line].pieces[piece].blanks += pad);
+            members
+                .iter()
+                .zip(pads)
+                .for_each(|(&(line, piece), pad)| lines[line].pieces[piece].blanks += pad);
         }
     }
 }
@@ -108,7 +111,8 @@ fn belong_together(lines: &[Line<'_>], line: usize, piece: usize, above: usize) 
     let is_word = |text: &str| text.starts_with(|c: char| c.is_alphanumeric() || c == '_' || c == '"');
     let alike = is_word(text) && is_word(text_above) && gaps(this, piece) == gaps(before, above);
     let anchor = this.indent.anchor;
-    let together = anchor == before.indent.anchor || anchor.is_some_and(|(to, at)| to + 1 == line && above > at);
+    let together =
+        anchor == before.indent.anchor || anchor.is_some_and(|(to, at)| to + 1 == line && above > at);
     together && (alike || text == text_above)
 }
 

@@ -73,9 +73,14 @@ impl Writer<'_> {
             }
             Item::System(system) => {
                 self.word();
-                self.braces(Braces::Hanging, &system.instances, |item| item.span, |w, item| {
-                    w.constructor(&item.constructor);
-                });
+                self.braces(
+                    Braces::Hanging,
+                    &system.instances,
+                    |item| item.span,
+                    |w, item| {
+                        w.constructor(&item.constructor);
+                    },
+                );
             }
             Item::Property(property) => {
                 self.up_to(property.formula.span.start);
@@ -177,7 +182,12 @@ impl Writer<'_> {
             BodyItem::Let(definition) => self.binding(&definition.ty, &definition.value),
             BodyItem::Flow(flow) => {
                 self.word();
-                self.braces(Braces::Hanging, &flow.equations, |item| item.span, |w, item| w.value(&item.rate));
+                self.braces(
+                    Braces::Hanging,
+                    &flow.equations,
+                    |item| item.span,
+                    |w, item| w.value(&item.rate),
+                );
             }
             BodyItem::Invariant(claim) | BodyItem::Assert(claim) => {
                 self.open(true);

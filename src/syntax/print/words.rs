@@ -49,7 +49,8 @@ impl<'t> Words<'t> {
     pub fn new(text: &'t str, tokens: &[Token]) -> Self {
         let keywords = keywords();
         // `min` and `max` are called like functions.
-        let opens = |word: &str| keywords.iter().any(|keyword| keyword == word) && word != "min" && word != "max";
+        let opens =
+            |word: &str| keywords.iter().any(|keyword| keyword == word) && word != "min" && word != "max";
         let mut ruler = Ruler { text, byte: 0, place: Place { line: 0, column: 0 } };
         let mut words = Vec::with_capacity(tokens.len());
         let mut comments = Vec::with_capacity(tokens.len() + 1);
@@ -61,7 +62,12 @@ impl<'t> Words<'t> {
                 TokenKind::Number | TokenKind::Text => true,
                 TokenKind::Symbol => matches!(word, ")" | "]" | "'"),
             };
-            words.push(Word { text: word, start: token.start(), place: ruler.advance(token.start()), ends_operand });
+            words.push(Word {
+                text: word,
+                start: token.start(),
+                place: ruler.advance(token.start()),
+                ends_operand,
+            });
             ruler.advance(token.end());
         }
         comments.push(ruler.comments_before(text.len()));

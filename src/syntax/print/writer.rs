@@ -71,7 +71,8 @@ impl<'t> Writer<'t> {
             self.comments(CONTINUED);
         }
         let place = self.words.words[self.next].place;
-        let word = Word { text: &self.text[span.range()], start: span.start as usize, place, ends_operand: true };
+        let word =
+            Word { text: &self.text[span.range()], start: span.start as usize, place, ends_operand: true };
         self.ops.push(Op::Word { word, blanks: usize::from(!self.glued) });
         self.glued = false;
         let rest = &self.words.words[self.next..];
@@ -235,7 +236,8 @@ impl<'t> Writer<'t> {
         }
         let line = |word: usize| self.words.line(word);
         let free = |word: usize| self.words.comments[word].is_empty();
-        let hanging = line(open) == line(self.next) && line(close - 1) == line(close) && free(self.next) && free(close);
+        let hanging =
+            line(open) == line(self.next) && line(close - 1) == line(close) && free(self.next) && free(close);
         let together = line(open) == line(close)
             || (hanging && items.len() == 1 && (self.next..close).all(free) && braces == Braces::Hanging);
         if together && free(close) {
@@ -339,4 +341,3 @@ impl<'t> Writer<'t> {
         self.glued = true;
     }
 }
-
