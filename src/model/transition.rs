@@ -208,9 +208,6 @@ impl<'a> Context<'a> {
         let per_time = Slot::of(Dimension::ONE).per_time();
         let rate = self.lower_into(scope, expr, per_time, "a rate");
         let facts = self.facts[rate.id.index()];
-        if rate.ty != Ty::Wrong && facts.quantified {
-            self.refuse("quantifiers in rates", expr.span);
-        }
         if rate.ty != Ty::Wrong
             && facts.closed
             && let Some(value) = self.evaluate_closed(rate.id)

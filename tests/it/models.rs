@@ -17,6 +17,7 @@ mod robertson;
 mod van_der_pol;
 mod double_crossing;
 mod multirate;
+mod flock;
 mod highway;
 mod interlock;
 mod convoy;
