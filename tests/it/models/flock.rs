@@ -56,10 +56,10 @@ fn the_flock_flies_as_small_steps_say() {
     let (first, mut joined) = ([mean(&flock, 2), mean(&flock, 3)], [0.0; N]);
     for k in 0..1200 {
         let next = step(&flock, h);
-        for bird in 0..N {
+        for (bird, joined) in joined.iter_mut().enumerate() {
             let (before, after) = (spread(&flock, bird), spread(&next, bird));
             if before > 0.1 && after <= 0.1 {
-                joined[bird] = h * (k as f64 + (before - 0.1) / (before - after));
+                *joined = h * (k as f64 + (before - 0.1) / (before - after));
             }
         }
         flock = next;
