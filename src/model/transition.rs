@@ -108,10 +108,8 @@ impl<'a> Context<'a> {
                 self.report(ActionError::ModeChange { span: target.span, why, help });
             }
             let alone = match item.trigger.kind {
-                TriggerKind::When => None,
+                TriggerKind::When | TriggerKind::After(_) | TriggerKind::Every(_) => None,
                 TriggerKind::Rate(_) => Some("rate"),
-                TriggerKind::After(_) => Some("after"),
-                TriggerKind::Every(_) => Some("every"),
                 TriggerKind::On { .. } => Some("on"),
             };
             if let Some(word) = alone {
