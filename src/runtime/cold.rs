@@ -75,6 +75,13 @@ impl<'p> Cold<'p> {
         self.places.get(agent).is_some_and(|place| place.cold)
     }
 
+    /// How far a cold agent has come, and its states there; none if it is not cold.
+    #[inline]
+    pub fn now(&self, agent: usize) -> Option<(f64, &[f64])> {
+        let place = self.places.get(agent).filter(|place| place.cold)?;
+        Some(self.herds[place.herd as usize].now(place.place as usize))
+    }
+
     /// The herd of a cold agent, and its place there.
     fn find(&self, agent: usize) -> (&Herd<'p>, usize) {
         let Place { herd, place, .. } = self.places[agent];
@@ -152,6 +159,11 @@ impl<'p> Cold<'p> {
         herd.tracks.range(place, state, span)
     }
 
+    /// Makes the tracks that are wanted, of ways that are followed from `from` on at least.
+    pub fn make_tracks(&mut self, from: f64) {
+        self.herds.iter_mut().for_each(|herd| herd.make_tracks(from));
+    }
+
     /// The time from which the way of a cold agent is followed, s.
     pub fn known_from(&self, agent: usize) -> f64 {
         let (herd, place) = self.find(agent);
@@ -165,8 +177,22 @@ impl<'p> Cold<'p> {
         (t, states.into())
     }
 
-    /// Has an agent, which may be cold in its mode, run ahead from `(t, states)`.
-    pub fn freeze(&mut self, agent: usize, ty: usize, mode: usize, (t, states): (f64, &[f64]), aux: &[f64]) {
+    /// Bounds of the states of a cold agent, in order, from the begin of the window on to where it has come.
+    pub fn bounds(&self, agent: usize) -> &[Interval] {
+        let (herd, place) = self.find(agent);
+        herd.bounds(place)
+    }
+
+    /// Has an agent, which may be cold in its mode, run ahead from `(t, states)`; `bounds` are those of its states from the
+    /// present to there.
+    pub fn freeze(
+        &mut self,
+        agent: usize,
+        (ty, mode): (usize, usize),
+        (t, states): (f64, &[f64]),
+        aux: &[f64],
+        bounds: impl Iterator<Item = Interval>,
+    ) {
         let Some(herd) = self.of_mode[ty][mode] else { return };
         if self.places[agent].herd != herd {
             self.leave(agent);
@@ -175,7 +201,7 @@ impl<'p> Cold<'p> {
         }
         let place = &mut self.places[agent];
         place.cold = true;
-        self.herds[herd as usize].start(place.place as usize, t, states, aux);
+        self.herds[herd as usize].start(place.place as usize, (t, states), aux, bounds);
     }
 
     /// Has an agent run ahead no more; it keeps its place.

@@ -117,9 +117,9 @@ impl Engine<'_, '_> {
     /// Where an agent can get to up to `until`, in the states that are compared of it, with half of the range around.
     fn reach(&mut self, agent: usize, near: &[Near], side: usize, until: f64) -> SmallVec<[Interval; 4]> {
         let mut states = SmallVec::new();
-        let now = self.present.time;
+        let span = (self.present.time, until);
         let (agents, groups) = (&self.agents, &self.groups.groups);
-        self.reaches.states(agents, groups, &mut self.enclosures, agent, (now, now, until), &mut states);
+        self.reaches.states(agents, groups, &mut self.enclosures, agent, span, &mut states);
         let around = |near: &Near| {
             let bound = states[if side == 0 { near.own } else { near.other }];
             let half = 0.5 * near.within * (1.0 + 1e-12);
