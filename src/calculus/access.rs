@@ -43,6 +43,8 @@ fn destroys(steps: &[ActionStep]) -> bool {
         ActionStep::Destroy { .. } => true,
         ActionStep::If { then, otherwise, .. } => destroys(then) || destroys(otherwise),
         ActionStep::Assign { .. }
+        | ActionStep::Draw { .. }
+        | ActionStep::Emit { .. }
         | ActionStep::Goto { .. }
         | ActionStep::Stop { .. }
         | ActionStep::Create(_) => false,
@@ -58,6 +60,8 @@ fn add_births<'s>(steps: &'s [ActionStep], found: &mut Vec<&'s Birth>) {
                 add_births(otherwise, found);
             }
             ActionStep::Assign { .. }
+            | ActionStep::Draw { .. }
+            | ActionStep::Emit { .. }
             | ActionStep::Goto { .. }
             | ActionStep::Stop { .. }
             | ActionStep::Destroy { .. } => {}

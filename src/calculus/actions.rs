@@ -10,7 +10,7 @@ use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
 use crate::calculus::frame::{AgentRef, Scope, Value};
 use crate::calculus::guard;
-use crate::calculus::system::{ActionList, ActionStep, Condition, Guard, Target};
+use crate::calculus::system::{ActionList, ActionStep, Condition, FunctionId, Guard, Target};
 use crate::model::ir::{Action, ExprId, Type, TypeId, VarRef};
 
 /// Lowers a list of actions in a scope; the frame is put in by whoever owns the scope, when it is complete.
@@ -39,6 +39,21 @@ fn steps(
         steps.push(match action {
             Action::Assign { agent, variable, value, span } => {
                 assign(draft, scope, *agent, *variable, *value, *span, name)?
+            }
+            Action::Draw { agent, variable, distribution, parameters, span } => {
+                let slot = writer(draft, scope, *agent)?;
+                let (target, written) = target(draft, scope, slot, *variable);
+                let stream = draft.stream(scope.frame.slots[slot].ty(), &written);
+                let parameters = numbers(draft, scope, parameters, &format!("{name} {written}"))?;
+                let distribution = *distribution;
+                ActionStep::Draw { slot, target, distribution, parameters, stream, span: *span }
+            }
+            Action::Emit { agent, event, values, delay, span } => {
+                let slot = writer(draft, scope, *agent)?;
+                let values = numbers(draft, scope, values, &format!("{name} emits"))?;
+                let delay = numbers(draft, scope, delay.as_slice(), &format!("{name} emits after"))?;
+                let delay = delay.first().copied();
+                ActionStep::Emit { slot, event: *event, values, delay, span: *span }
             }
             Action::If { condition, then, otherwise } => ActionStep::If {
                 condition: test(draft, scope, *condition, name)?,
@@ -75,12 +90,7 @@ fn assign(
     span: Span,
     name: &str,
 ) -> Result<ActionStep, Error> {
-    let slot = match aggregate::value(draft, scope, Scope::TOP, agent)? {
-        Value::Agent(AgentRef::Slot(slot)) => slot,
-        Value::Agent(AgentRef::Link { .. } | AgentRef::Absent) | Value::Number(_) | Value::Delayed(..) => {
-            unreachable!("the model lets only self and participants be written")
-        }
-    };
+    let slot = writer(draft, scope, agent)?;
     let (target, written) = target(draft, scope, slot, variable);
     let node = match aggregate::number(draft, scope, Scope::TOP, value) {
         Err(Error::QuantifierInNumber { .. }) if draft.model.exprs[value].ty == Type::Bool => {
@@ -100,6 +110,31 @@ fn assign(
     Ok(ActionStep::Assign { slot, target, value, span })
 }
 
+/// The slot of whoever is written, or emits.
+fn writer(draft: &mut Draft, scope: &mut Scope, agent: ExprId) -> Result<usize, Error> {
+    match aggregate::value(draft, scope, Scope::TOP, agent)? {
+        Value::Agent(AgentRef::Slot(slot)) => Ok(slot),
+        Value::Agent(AgentRef::Link { .. } | AgentRef::Absent) | Value::Number(_) | Value::Delayed(..) => {
+            unreachable!("the model lets only self and participants be written")
+        }
+    }
+}
+
+/// A function of one output for each of some numbers.
+fn numbers(
+    draft: &mut Draft,
+    scope: &mut Scope,
+    exprs: &[ExprId],
+    name: &str,
+) -> Result<Vec<FunctionId>, Error> {
+    let mut functions = Vec::with_capacity(exprs.len());
+    for &expr in exprs {
+        let node = aggregate::number(draft, scope, Scope::TOP, expr)?;
+        functions.push(draft.function(|| name.to_owned(), vec![node]));
+    }
+    Ok(functions)
+}
+
 /// The column that is written, and its name.
 fn target(draft: &Draft, scope: &Scope, slot: usize, variable: VarRef) -> (Target, String) {
     let ty = scope.frame.slots[slot].ty();
@@ -117,7 +152,9 @@ fn target(draft: &Draft, scope: &Scope, slot: usize, variable: VarRef) -> (Targe
 fn collect_writes(draft: &Draft, scope: &Scope, steps: &[ActionStep], writes: &mut Vec<(usize, Target)>) {
     for step in steps {
         match step {
-            ActionStep::Assign { slot, target, .. } => writes.push((*slot, *target)),
+            ActionStep::Assign { slot, target, .. } | ActionStep::Draw { slot, target, .. } => {
+                writes.push((*slot, *target));
+            }
             ActionStep::If { then, otherwise, .. } => {
                 collect_writes(draft, scope, then, writes);
                 collect_writes(draft, scope, otherwise, writes);
@@ -127,7 +164,10 @@ fn collect_writes(draft: &Draft, scope: &Scope, steps: &[ActionStep], writes: &m
                 writes.extend((0..layout.n_states).map(|k| (*slot, Target::State(k))));
                 writes.extend((0..layout.n_discretes).map(|k| (*slot, Target::Aux(layout.discrete(k)))));
             }
-            ActionStep::Goto { .. } | ActionStep::Stop { .. } | ActionStep::Create(_) => {}
+            ActionStep::Emit { .. }
+            | ActionStep::Goto { .. }
+            | ActionStep::Stop { .. }
+            | ActionStep::Create(_) => {}
         }
     }
 }

@@ -1,18 +1,19 @@
 //! Agent types and interactions, part by part: modes, claims, transitions, lets.
 
-use crate::base::FileId;
+use crate::base::{FileId, Span};
 use crate::calculus::actions;
 use crate::calculus::aggregate;
-use crate::calculus::condition::Sense;
+use crate::calculus::condition::{Cond, Sense, Written};
 use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
 use crate::calculus::flow;
-use crate::calculus::frame::Scope;
+use crate::calculus::frame::{Scope, Value};
+use crate::calculus::graph::Node;
 use crate::calculus::guard;
 use crate::calculus::symmetry;
 use crate::calculus::system::{
-    ActionList, AgentSystem, ClaimKind, ClaimSystem, Column, FunctionId, InteractionSystem, LetSystem,
-    LetValue, ModeSystem, PairTransition, TransitionSystem, Trigger,
+    ActionList, AgentSystem, ClaimKind, ClaimSystem, Column, Condition, FunctionId, Guard, InteractionSystem,
+    LetSystem, LetValue, ModeSystem, PairTransition, Relation, Sender, TransitionSystem, Trigger,
 };
 use crate::model::ir::{
     self, Action, Claim, Destination, ExprId, Inside, Interaction, Let, Mode, ModeId, Transition, Type,
@@ -109,7 +110,8 @@ fn destinations(list: &[Action], visit: &mut dyn FnMut(usize, Destination)) {
                 destinations(then, visit);
                 destinations(otherwise, visit);
             }
-            Action::Assign { .. } | Action::Stop { .. } | Action::Create(_) | Action::Destroy { .. } => {}
+            Action::Assign { .. } | Action::Draw { .. } | Action::Emit { .. } | Action::Stop { .. } => {}
+            Action::Create(_) | Action::Destroy { .. } => {}
         }
     }
 }
@@ -170,6 +172,7 @@ fn claim(
     let word = match kind {
         ClaimKind::Invariant => "invariant",
         ClaimKind::Assert => "assert",
+        ClaimKind::Rate => "rate",
     };
     let name = format!("{name} {word}");
     let violation = guard::guard(draft, &mut scope, claim.condition, Sense::Negative, &name)?;
@@ -193,11 +196,35 @@ pub fn transitions(draft: &mut Draft) {
             let depth = ty.modes[declared.source].depth;
             let lowered = transition(draft, scope, declared, depth);
             let Some(lowered) = draft.keep(lowered) else { continue };
+            if let ir::Trigger::Rate { claim, .. } = declared.trigger {
+                let claim = not_negative(draft, id, claim, declared);
+                let claim = draft.keep(claim).filter(|claim| !is_settled(&claim.violation));
+                draft.types[id.index()].modes[declared.source.index()].claims.extend(claim);
+            }
             let system = &mut draft.types[id.index()];
             system.modes[declared.source.index()].transitions.push(system.transitions.len());
             system.transitions.push(lowered);
         }
     }
+}
+
+/// The claim that the hazard of a transition is not negative.
+fn not_negative(
+    draft: &mut Draft,
+    ty: TypeId,
+    claim: ExprId,
+    declared: &Transition,
+) -> Result<ClaimSystem, Error> {
+    let mut scope = Scope::of_self(ty);
+    let name = format!("{} not negative", declared.label);
+    let violation = guard::guard(draft, &mut scope, claim, Sense::Negative, &name)?;
+    let (frame, span) = (scope.into_frame(), declared.span);
+    Ok(ClaimSystem { kind: ClaimKind::Rate, frame, violation, message: Some(declared.label.clone()), span })
+}
+
+/// Whether a claim is always true.
+fn is_settled(violation: &Guard) -> bool {
+    matches!(violation.condition, Condition::Constant(false))
 }
 
 /// Interactions and whether they are symmetric.
@@ -226,7 +253,7 @@ fn transition(
     depth: usize,
 ) -> Result<TransitionSystem, Error> {
     let label = &declared.label;
-    let trigger = trigger(draft, &mut scope, &declared.trigger, label)?;
+    let trigger = trigger(draft, &mut scope, &declared.trigger, (label, declared.span))?;
     let priority = match declared.priority {
         Some(expr) => Some(number(draft, &mut scope, expr, &format!("{label} priority"))?),
         None => None,
@@ -255,23 +282,58 @@ fn trigger(
     draft: &mut Draft,
     scope: &mut Scope,
     trigger: &ir::Trigger,
-    label: &str,
+    (label, span): (&str, Span),
 ) -> Result<Trigger, Error> {
     let name = format!("{label} guard");
     let guard = |draft: &mut Draft, scope: &mut Scope, guard: ExprId| {
         guard::guard(draft, scope, guard, Sense::Positive, &name)
     };
-    Ok(match *trigger {
-        ir::Trigger::When(condition) => Trigger::When(guard(draft, scope, condition)?),
-        ir::Trigger::After(delay, condition) => Trigger::After {
+    Ok(match trigger {
+        &ir::Trigger::When(condition) => Trigger::When(guard(draft, scope, condition)?),
+        ir::Trigger::Rate { guard: condition, .. } => {
+            let ty = scope.frame.slots[0].ty();
+            let labels = &draft.types[ty].hazards;
+            let hazard = labels.iter().position(|known| known == label).expect("every rate has a hazard");
+            Trigger::Rate {
+                hazard,
+                stream: draft.stream(ty, label),
+                due: due(draft, scope, hazard, label, span),
+                guard: condition.map(|condition| guard(draft, scope, condition)).transpose()?,
+            }
+        }
+        ir::Trigger::On { events, from, guard: condition } => Trigger::On {
+            events: events.iter().map(|&(ty, event)| (ty.index(), event)).collect(),
+            from: from.map_or(Ok(Sender::Others), |from| sender(draft, scope, from))?,
+            guard: condition.map(|condition| guard(draft, scope, condition)).transpose()?,
+        },
+        &ir::Trigger::After(delay, condition) => Trigger::After {
             delay: number(draft, scope, delay, &format!("{label} delay"))?,
             guard: condition.map(|condition| guard(draft, scope, condition)).transpose()?,
         },
-        ir::Trigger::Every(period, condition) => Trigger::Every {
+        &ir::Trigger::Every(period, condition) => Trigger::Every {
             period: number(draft, scope, period, &format!("{label} period"))?,
             guard: condition.map(|condition| guard(draft, scope, condition)).transpose()?,
         },
     })
+}
+
+/// That nothing is left of a hazard.
+fn due(draft: &mut Draft, scope: &Scope, hazard: usize, label: &str, span: Span) -> Guard {
+    let column = draft.layout(scope.frame.slots[0].ty()).hazard(hazard) as u32;
+    let left = draft.graph.intern(Node::State { slot: 0, column });
+    let cond = Cond::Atom(Relation::NonPositive, left, Written { span, sides: None });
+    guard::finish(draft, &scope.frame, cond, &format!("{label} due"))
+}
+
+/// Whom an `on` hears: the agent that an expression names, which has a slot.
+fn sender(draft: &mut Draft, scope: &mut Scope, from: ExprId) -> Result<Sender, Error> {
+    let span = draft.model.exprs[from].span;
+    let agent = match aggregate::value(draft, scope, Scope::TOP, from)? {
+        Value::Agent(agent) => agent,
+        Value::Number(_) | Value::Delayed(..) => unreachable!("the model is typed"),
+    };
+    let slot = scope.slot(draft.model, agent, span)?;
+    Ok(Sender::Slot(slot.expect("the model lets no message come from `none`")))
 }
 
 fn number(draft: &mut Draft, scope: &mut Scope, expr: ExprId, name: &str) -> Result<FunctionId, Error> {

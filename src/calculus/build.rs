@@ -98,6 +98,10 @@ fn step(draft: &mut Draft, scope: &mut Scope, env: EnvId, id: ExprId) -> Result<
             Value::Delayed(outer, argument) => return need(scope, outer, argument),
             value @ (Value::Number(_) | Value::Agent(_)) => return Ok(value),
         },
+        ExprKind::Received(k) => {
+            let column = draft.layout(scope.frame.slots[0].ty()).received(*k);
+            draft.graph.intern(aux(0, column))
+        }
         ExprKind::SelfAgent => return Ok(Value::Agent(AgentRef::Slot(scope.env_of(env).this))),
         ExprKind::Participant(k) => return Ok(Value::Agent(AgentRef::Slot(*k))),
         ExprKind::Bound(binder) => {

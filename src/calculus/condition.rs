@@ -160,6 +160,7 @@ impl Lowering<'_, '_> {
                 | ExprKind::Is(..)
                 | ExprKind::Apply(..)
                 | ExprKind::Time
+                | ExprKind::Received(_)
                 | ExprKind::SelfAgent
                 | ExprKind::Participant(_)
                 | ExprKind::Bound(_)

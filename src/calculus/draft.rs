@@ -10,9 +10,10 @@ use crate::base::{Arena, Diagnostic, Span};
 use crate::calculus::error::Error;
 use crate::calculus::graph::{Graph, NodeId};
 use crate::calculus::system::{
-    AgentSystem, Column, Function, FunctionId, Initials, InteractionSystem, Layout, LinkSystem, System,
+    AgentSystem, Column, EventSystem, Function, FunctionId, Initials, InteractionSystem, Layout, LinkSystem,
+    System,
 };
-use crate::model::ir::{AgentType, Link, Model, Type, Variable};
+use crate::model::ir::{AgentType, Event, Link, Model, Trigger, Type, Variable};
 
 /// See the head of this file.
 pub struct Draft<'m> {
@@ -33,7 +34,7 @@ pub struct Draft<'m> {
 impl<'m> Draft<'m> {
     /// The columns of all types, and nothing else yet.
     pub fn new(model: &'m Model) -> Self {
-        let types = model.types.iter().map(columns).collect();
+        let types = model.types.iter().map(|ty| columns(model, ty)).collect();
         let (graph, functions) = (Graph::default(), Arena::new());
         Self { model, graph, functions, known: HashTable::new(), types, diagnostics: Vec::new() }
     }
@@ -96,25 +97,45 @@ impl<'m> Draft<'m> {
         })
     }
 
+    /// The stream of an agent's random numbers that has this name, which is made if there is none yet.
+    pub fn stream(&mut self, ty: usize, name: &str) -> usize {
+        let streams = &mut self.types[ty].streams;
+        streams.iter().position(|known| known == name).unwrap_or_else(|| {
+            streams.push(name.to_owned());
+            streams.len() - 1
+        })
+    }
+
     /// The columns of an agent type.
     pub fn layout(&self, ty: usize) -> &Layout {
         &self.types[ty].layout
     }
 }
 
+/// How many values the event with the most carries of those that a type hears.
+fn n_received(model: &Model, ty: &AgentType) -> usize {
+    let heard = ty.transitions.iter().flat_map(|transition| match &transition.trigger {
+        Trigger::On { events, .. } => events.as_slice(),
+        Trigger::When(_) | Trigger::After(..) | Trigger::Every(..) | Trigger::Rate { .. } => &[],
+    });
+    heard.map(|&(ty, event)| model.types[ty].events[event].params.len()).max().unwrap_or(0)
+}
+
 fn link(link: &Link) -> LinkSystem {
     LinkSystem { name: link.name.clone(), required: link.required, updates: Vec::new() }
 }
 
-fn columns(ty: &AgentType) -> AgentSystem {
+fn columns(model: &Model, ty: &AgentType) -> AgentSystem {
     let column = |v: &Variable| Column { name: v.name.clone(), scale: v.scale, boolean: v.ty == Type::Bool };
     AgentSystem {
         name: ty.name.clone(),
         layout: Layout {
-            n_states: ty.states.len(),
+            n_states: ty.states.len() + ty.rates().count(),
+            n_hazards: ty.rates().count(),
             n_params: ty.params.len(),
             n_discretes: ty.discretes.len(),
             n_links: ty.links.len(),
+            n_received: n_received(model, ty),
             n_histories: 0,
             n_locks: 0,
         },
@@ -122,6 +143,9 @@ fn columns(ty: &AgentType) -> AgentSystem {
         params: ty.params.iter().map(column).collect(),
         discretes: ty.discretes.iter().map(column).collect(),
         links: ty.links.iter().map(link).collect(),
+        hazards: ty.rates().map(|transition| transition.label.clone()).collect(),
+        events: ty.events.iter().map(event).collect(),
+        streams: Vec::new(),
         lets: Vec::new(),
         declared: ty.declared.clone(),
         initials: Initials::default(),
@@ -129,4 +153,9 @@ fn columns(ty: &AgentType) -> AgentSystem {
         regions: Vec::new(),
         transitions: Vec::new(),
     }
+}
+
+fn event(event: &Event) -> EventSystem {
+    let params = event.params.iter().map(|param| param.name.clone()).collect();
+    EventSystem { name: event.name.clone(), params }
 }

@@ -8,7 +8,7 @@ use crate::calculus::graph::NodeId;
 use crate::calculus::print::{self, Names, Sheet};
 use crate::calculus::system::{
     ActionStep, AgentSystem, Atom, Birth, ClaimKind, Column, Condition, Destination, Flow, Frame, FunctionId,
-    Guard, KinkKind, LetValue, ModeSystem, Near, PairTransition, Quantified, Source, System, Target,
+    Guard, KinkKind, LetValue, ModeSystem, Near, PairTransition, Quantified, Sender, Source, System, Target,
     TransitionSystem, Trigger, VarRef,
 };
 
@@ -39,6 +39,7 @@ fn agent(system: &System, ty: &AgentSystem, out: &mut String) {
         ("parameters", columns(&ty.params)),
         ("discretes", columns(&ty.discretes)),
         ("links", ty.links.iter().map(|link| link.name.clone()).collect()),
+        ("hazards", ty.hazards.clone()),
     ] {
         if !names.is_empty() {
             let _ = writeln!(out, "  {word} {}", names.join(", "));
@@ -97,6 +98,7 @@ fn mode(system: &System, ty: &AgentSystem, mode: &ModeSystem, out: &mut String) 
         let word = match claim.kind {
             ClaimKind::Invariant => "invariant",
             ClaimKind::Assert => "assert",
+            ClaimKind::Rate => "rate not negative",
         };
         let text = block.condition(&sheet, &claim.violation, &claim.violation.condition, 0);
         block.line(4, format!("{word} violated by {text}"));
@@ -126,13 +128,13 @@ fn flow(system: &System, ty: &AgentSystem, flow: &Flow, out: &mut String) {
     let sheet = block.sheet();
     let outputs = |function: FunctionId| &system.functions[function].outputs;
     for (primes, function) in [("'", flow.rates), ("''", flow.accelerations)] {
-        for (state, &rate) in ty.states.iter().zip(outputs(function)) {
-            block.line(4, format!("{}{primes} = {}", state.name, sheet.text(rate)));
+        for (state, &rate) in outputs(function).iter().enumerate() {
+            block.line(4, format!("{}{primes} = {}", ty.state_name(state), sheet.text(rate)));
         }
     }
     for (entry, &value) in flow.jacobian.iter().zip(outputs(flow.jacobian_values)) {
         let by = sheet.state(entry.slot, entry.column);
-        block.line(4, format!("d({}')/d({by}) = {}", ty.states[entry.row].name, sheet.text(value)));
+        block.line(4, format!("d({}')/d({by}) = {}", ty.state_name(entry.row), sheet.text(value)));
     }
     for kink in &flow.kinks {
         let holds = match &kink.kind {
@@ -179,6 +181,8 @@ fn transition(
         Trigger::When(guard) => ("when", None, Some(guard)),
         Trigger::After { delay, guard } => ("after", Some(*delay), guard.as_ref()),
         Trigger::Every { period, guard } => ("every", Some(*period), guard.as_ref()),
+        Trigger::On { guard, .. } => ("on", None, guard.as_ref()),
+        Trigger::Rate { guard, .. } => ("rate", None, guard.as_ref()),
     };
     block.functions.extend(time.iter().chain(&transition.priority));
     if let Some(guard) = guard {
@@ -190,6 +194,12 @@ fn transition(
     block.line(2, format!("{head}{target}"));
     if let Some(time) = time {
         block.line(4, format!("{word} {}", block.value(&sheet, time)));
+    }
+    if let Trigger::Rate { due, .. } = &transition.trigger {
+        block.line(4, format!("rate: when {}", block.condition(&sheet, due, &due.condition, 0)));
+    }
+    if let Trigger::On { events, from, .. } = &transition.trigger {
+        block.line(4, format!("on {}{}", heard(system, events), sender(&transition.frame, *from)));
     }
     if let Some(guard) = guard {
         block.line(4, format!("when {}", block.condition(&sheet, guard, &guard.condition, 0)));
@@ -204,6 +214,22 @@ fn transition(
     }
     block.steps(&sheet, &transition.actions.steps, 4);
     block.close(&sheet, out);
+}
+
+/// `Car.braking, Bus.braking`
+fn heard(system: &System, events: &[(usize, usize)]) -> String {
+    let names = events.iter().map(|&(ty, event)| {
+        let ty = &system.types[ty];
+        format!("{}.{}", ty.name, ty.events[event].name)
+    });
+    names.collect::<Vec<_>>().join(", ")
+}
+
+fn sender(frame: &Frame, from: Sender) -> String {
+    match from {
+        Sender::Others => String::new(),
+        Sender::Slot(slot) => format!(" from {}", frame.slots[slot].name()),
+    }
 }
 
 /// `|a.x - b.x| <= 1, |a.y - b.y| <= 1`, to six digits, or all of whatever there is.
@@ -258,6 +284,8 @@ impl<'a> Block<'a> {
         for step in steps {
             match step {
                 ActionStep::Assign { value, .. } => self.functions.push(*value),
+                ActionStep::Draw { parameters, .. } => self.functions.extend(parameters),
+                ActionStep::Emit { values, delay, .. } => self.functions.extend(values.iter().chain(delay)),
                 ActionStep::If { condition, then, otherwise } => {
                     self.add_guard(condition);
                     self.add_steps(then);
@@ -315,6 +343,10 @@ impl<'a> Block<'a> {
 
     fn value(&self, sheet: &Sheet, function: FunctionId) -> String {
         sheet.text(self.system.functions[function].outputs[0])
+    }
+
+    fn values(&self, sheet: &Sheet, functions: &[FunctionId]) -> String {
+        functions.iter().map(|&function| self.value(sheet, function)).collect::<Vec<_>>().join(", ")
     }
 
     fn atoms(&mut self, sheet: &Sheet, atoms: &[Atom], indent: usize) {
@@ -409,11 +441,21 @@ impl<'a> Block<'a> {
         for step in steps {
             match step {
                 ActionStep::Assign { slot, target, value, .. } => {
-                    let column = match target {
-                        Target::State(k) => sheet.state(*slot, *k),
-                        Target::Aux(k) => sheet.aux(*slot, *k),
-                    };
+                    let column = column(sheet, *slot, *target);
                     self.line(indent, format!("{column} := {}", self.value(sheet, *value)));
+                }
+                ActionStep::Draw { slot, target, distribution, parameters, .. } => {
+                    let column = column(sheet, *slot, *target);
+                    let parameters = self.values(sheet, parameters);
+                    self.line(indent, format!("{column} ~ {}({parameters})", distribution.name()));
+                }
+                ActionStep::Emit { slot, event, values, delay, .. } => {
+                    let slot = &self.names.frame.slots[*slot];
+                    let event = &self.names.types[slot.ty()].events[*event].name;
+                    let (slot, values) = (slot.name(), self.values(sheet, values));
+                    let delay = delay.map(|delay| format!(" after {}", self.value(sheet, delay)));
+                    let delay = delay.unwrap_or_default();
+                    self.line(indent, format!("emit {slot}.{event}({values}){delay}"));
                 }
                 ActionStep::If { condition, then, otherwise } => {
                     let test = self.condition(sheet, condition, &condition.condition, 0);
@@ -439,5 +481,13 @@ impl<'a> Block<'a> {
                 }
             }
         }
+    }
+}
+
+/// The name of a column that is written.
+fn column(sheet: &Sheet, slot: usize, target: Target) -> String {
+    match target {
+        Target::State(k) => sheet.state(slot, k),
+        Target::Aux(k) => sheet.aux(slot, k),
     }
 }

@@ -9,20 +9,22 @@ use crate::calculus::frame::Scope;
 use crate::calculus::graph::{Graph, Node, NodeId};
 use crate::calculus::kinks;
 use crate::calculus::system::{Flow, JacobianEntry};
-use crate::model::ir::{ExprId, ModeId, TypeId};
+use crate::math::Op;
+use crate::model::ir::{ExprId, ModeId, Transition, Trigger, TypeId};
 
 /// The flow with these modes active.
 pub fn flow(draft: &mut Draft, ty: TypeId, active: &[usize], name: &str) -> Result<Flow, Error> {
     let mut scope = Scope::of_self(ty);
     let equations = equations(draft, ty, active);
-    let (exprs, spans): (Vec<ExprId>, Vec<Span>) = equations.into_iter().unzip();
+    let (exprs, mut spans): (Vec<ExprId>, Vec<Span>) = equations.into_iter().unzip();
     scope.equations = Some(exprs.clone());
     let mut plain = Vec::with_capacity(exprs.len());
     for &expr in &exprs {
-        plain.push(build::number(draft, &mut scope, Scope::TOP, expr).map_err(|halt| match halt {
-            Halt::Failed(error) => error,
-            Halt::Aggregate(..) => unreachable!("the model lets no aggregate stand in a flow"),
-        })?);
+        plain.push(number(draft, &mut scope, expr)?);
+    }
+    for (hazard, transition) in draft.model.types[ty].rates().enumerate() {
+        plain.push(hazard_rate(draft, &mut scope, (ty, active), hazard, transition)?);
+        spans.push(transition.span);
     }
     let (rates, kinks) = kinks::lock(draft, &mut scope, ty.index(), &plain, name);
     let mut accelerations: Vec<NodeId> = Vec::with_capacity(rates.len());
@@ -46,6 +48,37 @@ pub fn flow(draft: &mut Draft, ty: TypeId, active: &[usize], name: &str) -> Resu
         spans,
         frame: scope.into_frame(),
     })
+}
+
+fn number(draft: &mut Draft, scope: &mut Scope, expr: ExprId) -> Result<NodeId, Error> {
+    build::number(draft, scope, Scope::TOP, expr).map_err(|halt| match halt {
+        Halt::Failed(error) => error,
+        Halt::Aggregate(..) => unreachable!("the model lets no aggregate stand in a flow"),
+    })
+}
+
+/// The rate of what is left of a hazard (rule 11): less the hazard in the mode of the transition while its gate is open, else 0.
+fn hazard_rate(
+    draft: &mut Draft,
+    scope: &mut Scope,
+    (ty, active): (TypeId, &[usize]),
+    hazard: usize,
+    transition: &Transition,
+) -> Result<NodeId, Error> {
+    let zero = draft.graph.number(0.0);
+    let Trigger::Rate { rate, guard, .. } = transition.trigger else { return Ok(zero) };
+    if !active.contains(&transition.source.index()) {
+        return Ok(zero);
+    }
+    let rate = number(draft, scope, rate)?;
+    let less = derive::negative(&mut draft.graph, rate);
+    if guard.is_none() {
+        return Ok(less);
+    }
+    let column = draft.layout(ty.index()).gate(hazard) as u32;
+    let gate = draft.graph.intern(Node::Aux { slot: 0, column });
+    let open = draft.graph.binary(Op::Lt, zero, gate);
+    Ok(draft.graph.select(open, less, zero))
 }
 
 /// The equation of every state, in order; the model has checked that each has one.

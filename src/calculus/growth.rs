@@ -129,8 +129,14 @@ fn add(system: &System, bounds: &mut Bounds, list: &ActionList, types: &[usize])
     let mut reader = Reader::new(system, bounds, &list.frame);
     each_assignment(&list.steps, &mut |slot, target, value| {
         if let (Target::Aux(column), Some(ty)) = (target, types.get(slot)) {
-            let value = reader.function(value);
-            given.push((*ty, column, reader.forms.interval(value)));
+            let interval = match value {
+                Given::Value(value) => {
+                    let value = reader.function(value);
+                    reader.forms.interval(value)
+                }
+                Given::Draw => REAL,
+            };
+            given.push((*ty, column, interval));
         }
     });
     for (ty, column, interval) in given {
@@ -140,16 +146,25 @@ fn add(system: &System, bounds: &mut Bounds, list: &ActionList, types: &[usize])
     }
 }
 
+/// What a column is given.
+enum Given {
+    /// One output.
+    Value(FunctionId),
+    /// Whatever is drawn.
+    Draw,
+}
+
 /// Calls `each` with slot, column and value of every assignment, those in branches included.
-fn each_assignment(steps: &[ActionStep], each: &mut dyn FnMut(usize, Target, FunctionId)) {
+fn each_assignment(steps: &[ActionStep], each: &mut dyn FnMut(usize, Target, Given)) {
     for step in steps {
         match step {
-            ActionStep::Assign { slot, target, value, .. } => each(*slot, *target, *value),
+            ActionStep::Assign { slot, target, value, .. } => each(*slot, *target, Given::Value(*value)),
+            ActionStep::Draw { slot, target, .. } => each(*slot, *target, Given::Draw),
             ActionStep::If { then, otherwise, .. } => {
                 each_assignment(then, each);
                 each_assignment(otherwise, each);
             }
-            ActionStep::Goto { .. } | ActionStep::Stop { .. } => {}
+            ActionStep::Emit { .. } | ActionStep::Goto { .. } | ActionStep::Stop { .. } => {}
             ActionStep::Create(_) | ActionStep::Destroy { .. } => {}
         }
     }

@@ -4,18 +4,24 @@ use crate::math::Scale;
 
 /// The columns of an agent type.
 ///
-/// Auxiliary columns in order: number, mode, time of entry, parameters, discretes, links, histories, locks. Numbers of agents are
-/// held as reals, -1 for none. A history holds the number of a mode: the submode that was active last. A lock holds the branch that a kink of the flow has taken (rule 15).
+/// Auxiliary columns in order: number, mode, time of entry, parameters, discretes, links, what a message carries, gates, histories, locks. Numbers
+/// of agents are held as reals, -1 for none. A history holds the number of a mode: the submode that was active last. A lock holds the branch that
+/// a kink of the flow has taken (rule 15).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
-    /// How many states.
+    /// How many states, hazards included.
     pub n_states: usize,
+    /// How many of them, the last ones, are what is left of the hazards of its `rate` transitions, each with a gate: 1 while the
+    /// guard of the transition is true, else 0.
+    pub n_hazards: usize,
     /// How many parameters.
     pub n_params: usize,
     /// How many discrete variables.
     pub n_discretes: usize,
     /// How many links.
     pub n_links: usize,
+    /// How many values the messages carry that it hears (the most that any event does).
+    pub n_received: usize,
     /// How many modes remember which of their submodes was active last.
     pub n_histories: usize,
     /// How many locks (the most that any mode needs).
@@ -42,9 +48,21 @@ impl Layout {
     pub fn link(&self, k: usize) -> usize {
         3 + self.n_params + self.n_discretes + k
     }
+    /// Column of value k of the message at hand.
+    pub fn received(&self, k: usize) -> usize {
+        3 + self.n_params + self.n_discretes + self.n_links + k
+    }
+    /// Number of the state that is left of hazard k.
+    pub fn hazard(&self, k: usize) -> usize {
+        self.n_states - self.n_hazards + k
+    }
+    /// Column of the gate of hazard k.
+    pub fn gate(&self, k: usize) -> usize {
+        self.received(self.n_received) + k
+    }
     /// Column of history k.
     pub fn history(&self, k: usize) -> usize {
-        3 + self.n_params + self.n_discretes + self.n_links + k
+        self.gate(self.n_hazards) + k
     }
     /// Column of lock k.
     pub fn lock(&self, k: usize) -> usize {

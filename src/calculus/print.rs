@@ -55,7 +55,7 @@ impl Names<'_> {
         if let Slot::Fold { name, .. } = &self.frame.slots[slot as usize] {
             return format!("{name}{primes}");
         }
-        self.of(slot, &format!("{}{primes}", self.agent(slot).states[column as usize].name))
+        self.of(slot, &format!("{}{primes}", self.agent(slot).state_name(column as usize)))
     }
 
     fn aux(&self, slot: u32, column: u32) -> String {
@@ -70,7 +70,10 @@ impl Names<'_> {
             Layout::ENTRY => self.of(slot, "entry"),
             _ if column < layout.discrete(0) => self.of(slot, &agent.params[column - layout.param(0)].name),
             _ if column < layout.link(0) => self.of(slot, &agent.discretes[column - layout.discrete(0)].name),
-            _ if column < layout.lock(0) => self.of(slot, &agent.links[column - layout.link(0)].name),
+            _ if column < layout.received(0) => self.of(slot, &agent.links[column - layout.link(0)].name),
+            _ if column < layout.gate(0) => format!("received{}", column - layout.received(0) + 1),
+            _ if column < layout.history(0) => self.of(slot, &format!("gate{}", column - layout.gate(0) + 1)),
+            _ if column < layout.lock(0) => self.of(slot, &format!("history{}", column - layout.history(0))),
             _ => self.of(slot, &format!("lock{}", column - layout.lock(0))),
         }
     }
@@ -273,7 +276,7 @@ impl<'a> Sheet<'a> {
             Op::Le if self.graph.is_zero(a) => {
                 let (slot, at) = column(b)?;
                 let layout = &self.names.agent(slot).layout;
-                (layout.link(0)..layout.lock(0)).contains(&at).then(|| self.names.aux(slot, at as u32))
+                (layout.link(0)..layout.received(0)).contains(&at).then(|| self.names.aux(slot, at as u32))
             }
             Op::Eq => {
                 let (slot, k) = match (column(a), column(b)) {

@@ -93,6 +93,9 @@ impl<'a> Former<'a> {
                 parts.extend(guard.as_ref().map(|guard| self.guard(guard)));
                 parts
             }
+            Trigger::On { .. } | Trigger::Rate { .. } => {
+                unreachable!("the model refuses these in interactions")
+            }
         };
         if let Some(priority) = transition.priority {
             let priority = self.function(priority);
@@ -113,11 +116,18 @@ impl<'a> Former<'a> {
         match step {
             ActionStep::Assign { slot, target, value, .. } => {
                 let value = self.function(*value);
-                let column = match target {
-                    Target::State(k) => [0, *k],
-                    Target::Aux(k) => [1, *k],
-                };
+                let column = column(target);
                 self.part("assign", vec![self.places[*slot], column[0], column[1]], vec![value])
+            }
+            ActionStep::Draw { slot, target, distribution, parameters, .. } => {
+                let column = column(target);
+                let parts = parameters.iter().map(|&parameter| self.function(parameter)).collect();
+                self.part(distribution.name(), vec![self.places[*slot], column[0], column[1]], parts)
+            }
+            ActionStep::Emit { slot, event, values, delay, .. } => {
+                let parts = values.iter().chain(delay).map(|&value| self.function(value)).collect();
+                let numbers = vec![self.places[*slot], *event, values.len()];
+                self.part("emit", numbers, parts)
             }
             ActionStep::If { condition, then, otherwise } => {
                 let parts = vec![self.guard(condition), self.steps(then), self.steps(otherwise)];
@@ -314,6 +324,14 @@ impl<'a> Former<'a> {
         links.push(root);
         links.reverse();
         links
+    }
+}
+
+/// Kind and number of a column.
+fn column(target: &Target) -> [usize; 2] {
+    match target {
+        Target::State(k) => [0, *k],
+        Target::Aux(k) => [1, *k],
     }
 }
 

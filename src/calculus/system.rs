@@ -17,10 +17,14 @@ pub use crate::calculus::layout::{Column, Layout, Target};
 pub use crate::calculus::range::{Near, Range};
 pub use crate::calculus::relation::Relation;
 pub use crate::calculus::slot::Slot;
-use crate::math::draw::Distribution;
+pub use crate::math::draw::Distribution;
 pub use crate::model::ir::{
     Aggregate, Block, Destination, Inside, Instance, Integrator, Population, Record, Run, VarRef,
 };
+
+mod action;
+
+pub use action::{ActionList, ActionStep, Birth, Initials, Sender, Source, TransitionSystem, Trigger};
 
 /// Names a [`Function`].
 pub type FunctionId = Idx<Function>;
@@ -120,6 +124,12 @@ pub struct AgentSystem {
     pub discretes: Vec<Column>,
     /// The links.
     pub links: Vec<LinkSystem>,
+    /// The labels of its `rate` transitions. What is left of their hazards are states behind the others, which no output shows.
+    pub hazards: Vec<String>,
+    /// Its events.
+    pub events: Vec<EventSystem>,
+    /// What its random numbers are drawn for, each a stream of its own, by name.
+    pub streams: Vec<String>,
     /// Algebraic definitions, for recording.
     pub lets: Vec<LetSystem>,
     /// Recordable names in order of declaration.
@@ -181,6 +191,25 @@ pub enum Whither {
         /// One output.
         key: FunctionId,
     },
+}
+
+impl AgentSystem {
+    /// The name of a state, or of what is left of a hazard.
+    pub fn state_name(&self, k: usize) -> String {
+        match self.states.get(k) {
+            Some(column) => column.name.clone(),
+            None => format!("hazard of {}", self.hazards[k - self.states.len()]),
+        }
+    }
+}
+
+/// An event of an agent type.
+#[derive(Clone, Debug)]
+pub struct EventSystem {
+    /// Its name.
+    pub name: String,
+    /// The names of what it carries.
+    pub params: Vec<String>,
 }
 
 /// A `let`, computed when it is recorded.
@@ -425,156 +454,8 @@ pub enum ClaimKind {
     Invariant,
     /// A claim about the model: a violation is reported.
     Assert,
-}
-
-/// A transition of an agent type or an interaction.
-#[derive(Clone, Debug)]
-pub struct TransitionSystem {
-    /// As logs call it.
-    pub label: String,
-    /// The mode it belongs to; 0 for interactions.
-    pub source: usize,
-    /// 0 for interactions, 0 for agent-level transitions, then the depth of the mode.
-    pub depth: usize,
-    /// Place in the order of declaration over the whole program.
-    pub declaration: usize,
-    /// One output; none: 0.
-    pub priority: Option<FunctionId>,
-    /// When it fires.
-    pub trigger: Trigger,
-    /// Where it leads.
-    pub target: Option<Destination>,
-    /// What it does; shares the transition's frame.
-    pub actions: ActionList,
-    /// The agents that guard, priority and actions read.
-    pub frame: Frame,
-    /// Slots of the guard's outermost `exists` binders that actions may read.
-    pub witnesses: Vec<usize>,
-    /// Where it stands.
-    pub span: Span,
-}
-
-/// What makes a transition fire.
-#[derive(Clone, Debug)]
-pub enum Trigger {
-    /// The guard alone.
-    When(Guard),
-    /// Age at least `delay` (one output, s, read at entry), and the guard.
-    After {
-        /// s.
-        delay: FunctionId,
-        /// None: true.
-        guard: Option<Guard>,
-    },
-    /// At entry + k period (one output, s, read at entry) if the guard holds then.
-    Every {
-        /// s.
-        period: FunctionId,
-        /// None: true.
-        guard: Option<Guard>,
-    },
-}
-
-/// Actions; all right-hand sides read the state before the list.
-#[derive(Clone, Debug, Default)]
-pub struct ActionList {
-    /// The agents they read (that of the transition, or for entry and exit their own).
-    pub frame: Frame,
-    /// The steps.
-    pub steps: Vec<ActionStep>,
-    /// Every (slot, variable) that some branch writes, sorted, without duplicates.
-    pub writes: Vec<(usize, Target)>,
-}
-
-/// A step of a list of actions.
-#[derive(Clone, Debug)]
-pub enum ActionStep {
-    /// Writes one output.
-    Assign {
-        /// Whose column.
-        slot: usize,
-        /// Which column.
-        target: Target,
-        /// One output.
-        value: FunctionId,
-        /// Where it stands.
-        span: Span,
-    },
-    /// A choice.
-    If {
-        /// The test.
-        condition: Guard,
-        /// If it holds.
-        then: Vec<ActionStep>,
-        /// If not.
-        otherwise: Vec<ActionStep>,
-    },
-    /// The agent in the slot changes mode.
-    Goto {
-        /// Who.
-        slot: usize,
-        /// Into which mode.
-        target: Destination,
-        /// Where it stands.
-        span: Span,
-    },
-    /// Ends the run.
-    Stop {
-        /// Why.
-        reason: Option<String>,
-        /// Where it stands.
-        span: Span,
-    },
-    /// Makes an agent, at the end of the micro-step.
-    Create(Arc<Birth>),
-    /// Removes the agent in the slot, if there is one, at the end of the micro-step.
-    Destroy {
-        /// Who.
-        slot: usize,
-        /// Where it stands.
-        span: Span,
-    },
-}
-
-/// What the agents of a type start with, where they are not given anything else: what is declared, in an order in which each
-/// finds what it reads; parameters first.
-#[derive(Clone, Debug, Default)]
-pub struct Initials {
-    /// Reads the agent that is made, as far as it is.
-    pub frame: Frame,
-    /// What each variable starts with.
-    pub values: Vec<(VarRef, Source)>,
-}
-
-/// Where the value of a variable comes from when its agent is made.
-#[derive(Clone, Debug)]
-pub enum Source {
-    /// One output.
-    Number(FunctionId),
-    /// A random number.
-    Draw {
-        /// How it is distributed.
-        distribution: Distribution,
-        /// One output each.
-        parameters: Vec<FunctionId>,
-        /// Where it stands.
-        span: Span,
-    },
-}
-
-/// How an agent is made by an action.
-#[derive(Clone, Debug)]
-pub struct Birth {
-    /// Its type.
-    pub ty: usize,
-    /// The leaf mode it starts in.
-    pub mode: usize,
-    /// What it is given, by functions of the list's frame.
-    pub given: Vec<(VarRef, Source)>,
-    /// The links that it is given: number of the link, slot of the agent that it leads to; none: to nobody.
-    pub links: Vec<(usize, Option<usize>)>,
-    /// Where it stands.
-    pub span: Span,
+    /// That a hazard is not negative: a violation ends the run.
+    Rate,
 }
 
 /// An interaction of two agents.

@@ -48,6 +48,7 @@ fn stops(actions: &[Action]) -> bool {
     actions.iter().any(|action| match action {
         Action::Stop { .. } => true,
         Action::If { then, otherwise, .. } => stops(then) || stops(otherwise),
-        Action::Assign { .. } | Action::Goto { .. } | Action::Create(_) | Action::Destroy { .. } => false,
+        Action::Assign { .. } | Action::Draw { .. } | Action::Emit { .. } | Action::Goto { .. } => false,
+        Action::Create(_) | Action::Destroy { .. } => false,
     })
 }

@@ -7,10 +7,10 @@ use crate::calculus::system::Function;
 pub use crate::calculus::system::FunctionId;
 pub use crate::calculus::system::{
     ActionList, ActionStep, AgentSystem, Aggregate, Atom, Birth, ClaimKind, ClaimSystem, Column, Condition,
-    Destination, Flow, Fold, Frame, Guard, Initials, Inside, Integrator, InteractionSystem, Jumps, Kink,
-    KinkKind, Layout, LetSystem, LetValue, LinkUpdate, ModeSystem, Near, PairTransition, Population,
-    Quantified, Range, Record, Relation, Run, Slot, Source, Target, Term, TransitionSystem, Trigger, VarRef,
-    Whither,
+    Destination, Distribution, Flow, Fold, Frame, Guard, Initials, Inside, Integrator, InteractionSystem,
+    Jumps, Kink, KinkKind, Layout, LetSystem, LetValue, LinkUpdate, ModeSystem, Near, PairTransition,
+    Population, Quantified, Range, Record, Relation, Run, Sender, Slot, Source, Target, Term,
+    TransitionSystem, Trigger, VarRef, Whither,
 };
 use crate::codegen::kernel::{Kernel, StepKernel};
 use crate::codegen::series::SeriesTape;

@@ -8,8 +8,9 @@
 //! | key | the seed, little-endian (8), then the ASCII text `hyc draw` (8) |
 //! | message | the agent's path in UTF-8, a zero byte, the variable's name in UTF-8, a zero byte, the word's number k, little-endian (8) |
 //!
-//! The path is the agent's name in `system`, `cars[3]`. The hash is word k of the variable. Its first 52 bits are a number
-//! n, and `u = (n + 1/2) / 2^52`, exactly, is uniform in the open interval from 0 to 1. With u for word 0 and w for word 1:
+//! The path is the agent's name in `system`, `cars[3]`. Draw number n of a variable (0: its initial value; then, from 1 on, those
+//! of actions) has the words 2 n and 2 n + 1; a transition by `rate` draws as a variable of its label would. The hash is word k. Its first 52 bits are a number
+//! n, and `u = (n + 1/2) / 2^52`, exactly, is uniform in the open interval from 0 to 1. With u for the first word and w for the second:
 //!
 //! | | value |
 //! |---|---|
@@ -37,6 +38,8 @@ pub struct Key<'k> {
     pub agent: &'k str,
     /// The variable's name.
     pub variable: &'k str,
+    /// The number of the draw.
+    pub draw: u64,
 }
 
 impl Key<'_> {
@@ -51,10 +54,10 @@ impl Key<'_> {
         hasher.finish()
     }
 
-    /// A number made of word `k`, uniform in the open interval from 0 to 1.
+    /// A number made of word `k` of this draw, uniform in the open interval from 0 to 1.
     fn unit(self, k: u64) -> f64 {
         const SCALE: f64 = 1.0 / (1_u64 << 52) as f64;
-        ((self.word(k) >> 12) as f64 + 0.5) * SCALE
+        ((self.word(2 * self.draw + k) >> 12) as f64 + 0.5) * SCALE
     }
 }
 

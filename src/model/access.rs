@@ -2,7 +2,7 @@
 
 use super::ir::{
     Action, AgentType, Create, Destination, Draw, ExprId, Given, Inside, Integrator, LinkCase, LinkTarget,
-    ModeId, Model, Population, Run, VarRef,
+    ModeId, Model, Population, Run, Transition, Trigger, VarRef,
 };
 
 impl Model {
@@ -32,12 +32,18 @@ fn add_creations<'m>(list: &'m [Action], found: &mut Vec<&'m Create>) {
                 add_creations(then, found);
                 add_creations(otherwise, found);
             }
-            Action::Assign { .. } | Action::Goto { .. } | Action::Stop { .. } | Action::Destroy { .. } => {}
+            Action::Assign { .. } | Action::Draw { .. } | Action::Emit { .. } | Action::Goto { .. } => {}
+            Action::Stop { .. } | Action::Destroy { .. } => {}
         }
     }
 }
 
 impl AgentType {
+    /// The `rate` transitions, in order.
+    pub fn rates(&self) -> impl Iterator<Item = &Transition> {
+        self.transitions.iter().filter(|transition| matches!(transition.trigger, Trigger::Rate { .. }))
+    }
+
     /// Whether a mode is another one, or inside it.
     pub fn is_inside(&self, mode: ModeId, other: ModeId) -> bool {
         std::iter::successors(Some(mode), |&mode| self.modes[mode].parent).any(|around| around == other)

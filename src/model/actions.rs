@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::context::{Context, Home, Member, Scope, Value};
 use super::error::{ActionError, NameError};
-use super::ir::{Action, ExprKind, TypeId, VarRef};
+use super::ir::{Action, ExprKind, Given, TypeId, VarRef};
 use super::limits;
 use super::suggest::closest;
 use super::types::{Slot, Ty};
@@ -48,9 +48,8 @@ impl<'a> Context<'a> {
             ActionKind::Assign { place, given } => self.assignment(scope, place, given, span, written),
             ActionKind::Create(constructor) => self.create(scope, constructor),
             ActionKind::Destroy(agent) => self.destroy(scope, agent, span),
-            ActionKind::Emit { .. } => {
-                self.refuse("`emit` actions", span);
-                None
+            ActionKind::Emit { event, args, delay } => {
+                self.emission(scope, event, args, delay.as_ref(), span)
             }
             ActionKind::ChangeMode { participant, target } => {
                 self.mode_change(scope, participant, target, span, written)
@@ -72,17 +71,25 @@ impl<'a> Context<'a> {
         span: Span,
         written: &mut Written,
     ) -> Option<Action> {
-        if given.kind == GivenKind::Draw {
-            self.refuse("random draws by `~` in actions", given.value.span);
-            return None;
-        }
         let found = self.place(scope, place);
         let slot = found.as_ref().map_or(Slot::plain(Ty::Wrong), |found| found.slot);
-        let what = format!("the new value of `{}`", place.variable.text);
-        let value = self.lower_into(scope, &given.value, slot, &what);
+        let new = match given.kind {
+            GivenKind::Value => {
+                let what = format!("the new value of `{}`", place.variable.text);
+                Some(Given::Value(self.lower_into(scope, &given.value, slot, &what).id))
+            }
+            GivenKind::Draw => self.lower_draw(scope, &given.value, slot).map(Given::Draw),
+        };
         let Place { agent, participant, variable, .. } = found?;
         self.mark_written(written, (participant, Some(variable)), &place.variable.text, place.span);
-        Some(Action::Assign { agent: agent.id, variable, value: value.id, span })
+        let agent = agent.id;
+        Some(match new? {
+            Given::Value(value) => Action::Assign { agent, variable, value, span },
+            Given::Draw(draw) => {
+                let (distribution, parameters) = (draw.distribution, draw.parameters().to_vec());
+                Action::Draw { agent, variable, distribution, parameters, span }
+            }
+        })
     }
 
     fn mark_written(&mut self, written: &mut Written, key: (usize, Option<VarRef>), name: &str, span: Span) {
@@ -124,7 +131,7 @@ impl<'a> Context<'a> {
     }
 
     /// A participant by name; none, and a diagnostic, if it is none.
-    fn participant(&mut self, number: usize, name: &ast::Name) -> Option<(usize, TypeId)> {
+    pub fn participant(&mut self, number: usize, name: &ast::Name) -> Option<(usize, TypeId)> {
         let participants = self.pairs[number].participants?;
         let which = participants.iter().position(|(participant, _)| *participant == name.text);
         if which.is_none() {
@@ -160,7 +167,7 @@ impl<'a> Context<'a> {
                 ("a `let`", "it follows from other values; assign those, or declare a `discrete`")
             }
             Some(Member::Link(_)) => ("a link", "links are set where the agent is made, in `system`"),
-            Some(Member::Event) => ("an event", "events are sent by `emit`"),
+            Some(Member::Event(_)) => ("an event", "events are sent by `emit`"),
             Some(Member::Twice) => return None,
             None if scope.bound.iter().any(|(bound, _)| *bound == name.text) => {
                 ("another agent", "only an `interaction` may write the agents that take part in it")

@@ -38,7 +38,7 @@ impl<'a> Context<'a> {
                     Progress::Done(Meaning::Let(number, _)) => VarRef::Let(number),
                     Progress::Waiting | Progress::Running | Progress::Done(_) => return None,
                 },
-                Member::Event | Member::Twice => return None,
+                Member::Event(_) | Member::Twice => return None,
             };
             Some((name.to_string(), variable))
         });
@@ -154,7 +154,7 @@ impl<'a> Context<'a> {
                 ("a `let`", "a `let` follows from other values; declare a `state` instead")
             }
             Some(Member::Link(_)) => ("a link", "only numbers flow"),
-            Some(Member::Event) => ("an event", "only numbers flow"),
+            Some(Member::Event(_)) => ("an event", "only numbers flow"),
             Some(Member::Twice) => return None,
             None => {
                 let similar =

@@ -106,7 +106,8 @@ impl Pass<'_, '_> {
             }
             ExprKind::Aggregate { term: Some(term), .. } => self.of(*term, frame).named(),
             ExprKind::Aggregate { term: None, .. } => Measure::NUMBER,
-            ExprKind::SelfAgent
+            ExprKind::Received(_)
+            | ExprKind::SelfAgent
             | ExprKind::Participant(_)
             | ExprKind::Bound(_)
             | ExprKind::NoAgent

@@ -169,6 +169,8 @@ pub(super) struct AgentNames<'a> {
     pub states: Vec<Slot>,
     /// See `params`.
     pub discretes: Vec<Slot>,
+    /// Of what each event carries.
+    pub events: Vec<Vec<Slot>>,
     /// Where the dimensions of the `let`s come from, by their numbers in the product.
     pub lets: Vec<Quantity>,
     /// The parts of the texts of modes and regions, by number; none for the root.
@@ -193,7 +195,7 @@ pub(super) enum Member {
     /// A `let`, by the number of its definition.
     Let(usize),
     /// An event.
-    Event,
+    Event(usize),
     /// Declared twice, which has been reported.
     Twice,
 }
@@ -218,6 +220,8 @@ pub(super) struct Scope<'a> {
     pub locals: Vec<(&'a str, Slot)>,
     /// Names bound by quantifiers, the innermost last.
     pub bound: Vec<(&'a str, BinderId)>,
+    /// Names bound by `on`: what the message carries.
+    pub received: Vec<(&'a str, Slot)>,
     /// Names bound by a `nearest` of the guard, with its link.
     pub nearest: Vec<(&'a str, Value)>,
 }
@@ -242,7 +246,7 @@ pub(super) enum Home {
 impl Scope<'_> {
     /// A scope without names of its own.
     pub fn of(home: Home) -> Self {
-        Scope { home, locals: Vec::new(), bound: Vec::new(), nearest: Vec::new() }
+        Scope { home, locals: Vec::new(), bound: Vec::new(), received: Vec::new(), nearest: Vec::new() }
     }
 }
 
@@ -448,7 +452,8 @@ impl<'a> Context<'a> {
                 facts.pure = false;
                 facts.quantified = true;
             }
-            ExprKind::SelfAgent
+            ExprKind::Received(_)
+            | ExprKind::SelfAgent
             | ExprKind::Participant(_)
             | ExprKind::Bound(_)
             | ExprKind::NoAgent

@@ -77,7 +77,7 @@ impl<'a> Context<'a> {
                 return self.check_link_argument(create.ty, k, &arg.name);
             }
             Some(Member::Twice) => return,
-            Some(Member::Let(_) | Member::Event) | None => {
+            Some(Member::Let(_) | Member::Event(_)) | None => {
                 let is_let = matches!(member, Some(Member::Let(_)));
                 self.unknown_argument(create.ty, &arg.name, is_let);
                 return;

@@ -6,7 +6,7 @@ use super::context::{
     AgentNames, Body, Context, Definition, Global, GlobalKind, Member, PairNames, Progress,
 };
 use super::error::{LimitError, NameError, TypeError};
-use super::ir::{AgentType, Initials, Interaction, Link, Mode, ModeId, Type, TypeId, Variable};
+use super::ir::{AgentType, Event, Initials, Interaction, Link, Mode, ModeId, Type, TypeId, Variable};
 use super::types::{Quantity, Slot, Ty};
 use crate::base::{Arena, Span};
 use crate::syntax::ast::{self, AgentItem, BodyItem, Item, VariableKind};
@@ -102,6 +102,7 @@ impl<'a> Context<'a> {
             states: Vec::new(),
             discretes: Vec::new(),
             links: Vec::new(),
+            events: Vec::new(),
             lets: Vec::new(),
             declared: Vec::new(),
             initials: Initials::default(),
@@ -114,6 +115,7 @@ impl<'a> Context<'a> {
             params: Vec::new(),
             states: Vec::new(),
             discretes: Vec::new(),
+            events: Vec::new(),
             lets: Vec::new(),
             modes: vec![None],
             mode_lets: vec![FxHashMap::default()],
@@ -140,10 +142,7 @@ impl<'a> Context<'a> {
                     }
                 }
                 AgentItem::Link(link) => self.declare_link(ty, link),
-                AgentItem::Event(event) => {
-                    self.refuse("events", event.span);
-                    self.declare_member(ty, &event.name, Member::Event);
-                }
+                AgentItem::Event(event) => self.declare_event(ty, event),
                 AgentItem::Region(_) => {}
                 AgentItem::Body(BodyItem::Let(item)) => {
                     let number = self.add_definition(&item.name, Body::AgentLet(ty, ModeId::new(0), item));
@@ -246,6 +245,37 @@ impl<'a> Context<'a> {
             let found = self.describe(slot.ty);
             self.report(TypeError::NotAllowed { what, found, span, help });
         }
+    }
+
+    fn declare_event(&mut self, ty: TypeId, item: &'a ast::Event) {
+        let mut params: Vec<Variable> = Vec::new();
+        let mut slots = Vec::new();
+        for formal in &item.formals {
+            let slot = self.slot(&formal.ty);
+            let slot = self.no_text(slot, "what an event carries", formal.ty.span);
+            if slot.ty.is_reference() {
+                let found = self.describe(slot.ty);
+                let help = "an event carries numbers and truth values; the receiver may link to its sender";
+                let (what, span) = ("what an event carries", formal.ty.span);
+                self.report(TypeError::NotAllowed { what, found, span, help });
+            }
+            if let Some(default) = &formal.default {
+                let (what, found) = ("what an event carries", "given by default".to_string());
+                let help = "leave the default out; whoever emits the event says all that it carries";
+                self.report(TypeError::NotAllowed { what, found, span: default.span, help });
+            }
+            if let Some(first) = params.iter().find(|param| param.name == formal.name.text) {
+                let (name, span, first) = (formal.name.text.clone(), formal.name.span, first.span);
+                self.report(NameError::Taken { name, span, first });
+            }
+            params.push(variable(&formal.name, Some(&formal.ty), slot));
+            slots.push(slot);
+        }
+        self.agents[ty.index()].events.push(slots);
+        let events = &mut self.model.types[ty].events;
+        events.push(Event { name: item.name.text.clone(), params, span: item.name.span });
+        let number = events.len() - 1;
+        self.declare_member(ty, &item.name, Member::Event(number));
     }
 
     fn declare_link(&mut self, ty: TypeId, item: &'a ast::Link) {

@@ -129,7 +129,8 @@ fn find_gotos(actions: &[Action], found: &mut Vec<(usize, Destination)>) {
                 find_gotos(then, found);
                 find_gotos(otherwise, found);
             }
-            Action::Assign { .. } | Action::Create(_) | Action::Destroy { .. } | Action::Stop { .. } => {}
+            Action::Assign { .. } | Action::Draw { .. } | Action::Emit { .. } | Action::Stop { .. } => {}
+            Action::Create(_) | Action::Destroy { .. } => {}
         }
     }
 }

@@ -7,7 +7,8 @@ use std::fmt::Write;
 use super::formula::{Formulas, Names, number_text};
 use super::ir::{
     Action, AgentType, Claim, Create, ExprId, Given, Instance, Integrator, Interaction, LinkCase, LinkTarget,
-    Mode, ModeId, Model, ParamValue, Population, Record, Run, Transition, Trigger, Type, VarRef, Variable,
+    Mode, ModeId, Model, ParamValue, Population, Record, Run, Transition, Trigger, Type, TypeId, VarRef,
+    Variable,
 };
 
 /// How many agents of a block are written.
@@ -92,6 +93,13 @@ impl<'m> Writer<'m> {
                 self.link_case(case);
             }
         }
+        for event in &ty.events {
+            let params = event.params.iter().map(|Variable { name, ty, unit, scale, .. }| {
+                format!("{name}: {}{}", self.ty(*ty), unit_text(unit.as_deref(), Some(scale.factor())))
+            });
+            let params = params.collect::<Vec<_>>().join(", ");
+            self.line(1, &format!("event {}({params})", event.name));
+        }
         for item in &ty.lets {
             let of = self.ty(self.model.exprs[item.value].ty);
             let unit = unit_text(item.unit.as_deref(), Some(item.scale.factor()));
@@ -142,10 +150,16 @@ impl<'m> Writer<'m> {
     }
 
     fn transition(&mut self, item: &Transition, ty: Option<&AgentType>, names: Names) {
+        let on;
         let (word, value, guard) = match &item.trigger {
             Trigger::When(guard) => ("", None, Some(*guard)),
             Trigger::After(delay, guard) => (" after ", Some(*delay), *guard),
             Trigger::Every(period, guard) => (" every ", Some(*period), *guard),
+            Trigger::Rate { rate, guard, .. } => (" rate ", Some(*rate), *guard),
+            Trigger::On { events, from, guard } => {
+                on = self.heard(events, *from);
+                (on.as_str(), *from, *guard)
+            }
         };
         let mut text = format!("{}:{word}", item.label);
         if let Some(value) = value {
@@ -177,6 +191,20 @@ impl<'m> Writer<'m> {
         self.actions(&item.actions, names, 2);
     }
 
+    fn list(&self, values: &[ExprId], names: Names) -> String {
+        values.iter().map(|&value| self.formulas.text(value, names)).collect::<Vec<_>>().join(", ")
+    }
+
+    /// ` on Car.braking, Bus.braking from `
+    fn heard(&self, events: &[(TypeId, usize)], from: Option<ExprId>) -> String {
+        let names = events.iter().map(|&(ty, event)| {
+            let ty = &self.model.types[ty];
+            format!("{}.{}", ty.name, ty.events[event].name)
+        });
+        let from = if from.is_some() { " from " } else { "" };
+        format!(" on {}{from}", names.collect::<Vec<_>>().join(", "))
+    }
+
     fn actions(&mut self, actions: &[Action], names: Names, depth: usize) {
         for action in actions {
             match action {
@@ -188,6 +216,23 @@ impl<'m> Writer<'m> {
                     let agent = self.formulas.text(*agent, names);
                     let value = self.formulas.text(*value, names);
                     self.line(depth, &format!("{agent}.{} := {value}", variable_name(owner, *variable)));
+                }
+                Action::Draw { agent, variable, distribution, parameters, .. } => {
+                    let Type::Agent(owner) = self.model.exprs[*agent].ty else { continue };
+                    let variable = variable_name(&self.model.types[owner], *variable);
+                    let agent = self.formulas.text(*agent, names);
+                    let parameters = self.list(parameters, names);
+                    let distribution = distribution.name();
+                    self.line(depth, &format!("{agent}.{variable} ~ {distribution}({parameters})"));
+                }
+                Action::Emit { agent, event, values, delay, .. } => {
+                    let Type::Agent(owner) = self.model.exprs[*agent].ty else { continue };
+                    let event = &self.model.types[owner].events[*event].name;
+                    let agent = self.formulas.text(*agent, names);
+                    let values = self.list(values, names);
+                    let delay = delay.map(|delay| format!(" after {}", self.formulas.text(delay, names)));
+                    let delay = delay.unwrap_or_default();
+                    self.line(depth, &format!("emit {agent}.{event}({values}){delay}"));
                 }
                 Action::If { condition, then, otherwise } => {
                     let condition = self.formulas.text(*condition, names);

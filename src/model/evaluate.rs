@@ -110,6 +110,7 @@ impl Evaluator {
                 return;
             }
             ExprKind::Time
+            | ExprKind::Received(_)
             | ExprKind::SelfAgent
             | ExprKind::Participant(_)
             | ExprKind::Bound(_)

@@ -117,6 +117,7 @@ impl<'m> Formulas<'m> {
             ExprKind::Local(number) => {
                 out.push_str(names.locals.get(*number).map_or("index", |(name, _)| name))
             }
+            ExprKind::Received(number) => out.push_str(&format!("received {}", number + 1)),
             ExprKind::SelfAgent => out.push_str("self"),
             ExprKind::Participant(number) => {
                 out.push_str(names.pair.map_or("participant", |pair| pair.participants[*number].as_str()));

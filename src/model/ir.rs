@@ -12,6 +12,10 @@ pub use crate::model::integrator::Integrator;
 pub use crate::model::kinds::{Inside, ParamValue};
 use crate::model::limits::Limits;
 
+mod action;
+
+pub use action::{Action, Create, Destination, Transition, Trigger};
+
 /// Names an [`Expr`].
 pub type ExprId = Idx<Expr>;
 /// Names a [`Function`].
@@ -100,6 +104,8 @@ pub enum ExprKind {
     Time,
     /// A parameter of the enclosing function, by position.
     Local(usize),
+    /// What a message carries, by position: bound by the `on` of the enclosing transition.
+    Received(usize),
     /// The agent whose text this is.
     SelfAgent,
     /// A participant of the enclosing interaction: 0 or 1.
@@ -205,6 +211,8 @@ pub struct AgentType {
     pub discretes: Vec<Variable>,
     /// Links; parameters of agent type are links that are never none.
     pub links: Vec<Link>,
+    /// Events that its agents emit.
+    pub events: Vec<Event>,
     /// Algebraic definitions, each after those that it reads (of the same agent).
     pub lets: Vec<Let>,
     /// Recordable names in order of declaration.
@@ -275,6 +283,17 @@ pub struct Link {
     pub required: bool,
     /// What it follows from, if it has an expression of its own: the first case that holds says whom it leads to.
     pub cases: Vec<LinkCase>,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// `event name(params)`.
+#[derive(Clone, Debug)]
+pub struct Event {
+    /// Its name.
+    pub name: String,
+    /// What its messages carry.
+    pub params: Vec<Variable>,
     /// Where it is declared.
     pub span: Span,
 }
@@ -380,116 +399,6 @@ pub struct Claim {
     pub condition: ExprId,
     /// The text after it.
     pub message: Option<String>,
-    /// Where it stands.
-    pub span: Span,
-}
-
-/// A transition of an agent or of an interaction.
-#[derive(Clone, Debug)]
-pub struct Transition {
-    /// As logs call it: `Car.left`, `Bump.pair`, `Car.Cruise->Follow`.
-    pub label: String,
-    /// The mode it belongs to; the root for agent-level ones and for interactions.
-    pub source: ModeId,
-    /// When it fires.
-    pub trigger: Trigger,
-    /// Higher first; 0 if not given.
-    pub priority: Option<ExprId>,
-    /// Where it leads.
-    pub target: Option<Destination>,
-    /// What it does.
-    pub actions: Vec<Action>,
-    /// Agents bound by the guard's outermost `exists` that the actions may name.
-    pub witnesses: Vec<BinderId>,
-    /// Where it stands.
-    pub span: Span,
-}
-
-/// Where a change of mode leads: a mode as it is written, and what is entered inside it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Destination {
-    /// The mode.
-    pub mode: ModeId,
-    /// Which of its submodes.
-    pub inside: Inside,
-}
-
-/// What makes a transition fire.
-#[derive(Clone, Debug)]
-pub enum Trigger {
-    /// `when guard`.
-    When(ExprId),
-    /// `after delay (when guard)`.
-    After(ExprId, Option<ExprId>),
-    /// `every period (when guard)`.
-    Every(ExprId, Option<ExprId>),
-}
-
-/// A step of a list of actions. All right-hand sides of one list read the state before it.
-#[derive(Clone, Debug)]
-pub enum Action {
-    /// `variable := value`; the agent is `SelfAgent` or a `Participant`; the variable a state or a discrete.
-    Assign {
-        /// Whose.
-        agent: ExprId,
-        /// Which.
-        variable: VarRef,
-        /// The new value.
-        value: ExprId,
-        /// Where it stands.
-        span: Span,
-    },
-    /// `if condition { } else { }`; `else if` is nested in `otherwise`.
-    If {
-        /// The test.
-        condition: ExprId,
-        /// If it holds.
-        then: Vec<Action>,
-        /// If not.
-        otherwise: Vec<Action>,
-    },
-    /// `a -> Mode` in an interaction.
-    Goto {
-        /// Which participant.
-        participant: usize,
-        /// Into which mode.
-        target: Destination,
-        /// Where it stands.
-        span: Span,
-    },
-    /// Ends the run.
-    Stop {
-        /// Why.
-        reason: Option<String>,
-        /// Where it stands.
-        span: Span,
-    },
-    /// Makes an agent, at the end of the micro-step.
-    Create(Box<Create>),
-    /// Removes an agent, at the end of the micro-step; nothing if the expression is `none`.
-    Destroy {
-        /// Which.
-        agent: ExprId,
-        /// Where it stands.
-        span: Span,
-    },
-}
-
-/// `create Type(arguments) in Mode`: what the arguments do not give comes from the type's [`Initials`].
-#[derive(Clone, Debug)]
-pub struct Create {
-    /// The type of the agent.
-    pub ty: TypeId,
-    /// The leaf mode it starts in.
-    pub mode: ModeId,
-    /// By parameter, what the argument gives.
-    pub params: Vec<Option<Given>>,
-    /// By state.
-    pub states: Vec<Option<Given>>,
-    /// By discrete variable.
-    pub discretes: Vec<Option<Given>>,
-    /// By link, the agent.
-    pub links: Vec<Option<ExprId>>,
     /// Where it stands.
     pub span: Span,
 }

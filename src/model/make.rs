@@ -117,7 +117,7 @@ impl<'a> Context<'a> {
             Given::Draw(draw) => {
                 let agent = instance_name(block, index);
                 let variable = self.model.types[plan.ty].variable_name(variable).to_string();
-                let key = Key { seed: self.model.run.seed, agent: &agent, variable: &variable };
+                let key = Key { seed: self.model.run.seed, agent: &agent, variable: &variable, draw: 0 };
                 self.draw(&draw, &known, key)
             }
         }

@@ -37,6 +37,7 @@ mod draw;
 mod links;
 mod define;
 mod create;
+mod events;
 mod actions;
 mod transition;
 mod behaviour;

@@ -8,6 +8,7 @@ pub(super) fn for_each_operand(kind: &ExprKind, mut each: impl FnMut(ExprId)) {
         ExprKind::Number(_)
         | ExprKind::Time
         | ExprKind::Local(_)
+        | ExprKind::Received(_)
         | ExprKind::SelfAgent
         | ExprKind::Participant(_)
         | ExprKind::Bound(_)

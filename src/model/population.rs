@@ -168,7 +168,7 @@ impl<'a> Context<'a> {
                     continue;
                 }
                 Some(Member::Twice) => continue,
-                Some(Member::Let(_) | Member::Event) | None => {
+                Some(Member::Let(_) | Member::Event(_)) | None => {
                     let is_let = matches!(member, Some(Member::Let(_)));
                     plan.misspelt.extend(self.unknown_argument(plan.ty, &arg.name, is_let));
                     continue;
@@ -250,7 +250,7 @@ impl<'a> Context<'a> {
                 Some(Member::State(number)) => (names.states[number], &mut plan.states[number]),
                 Some(Member::Discrete(number)) => (names.discretes[number], &mut plan.discretes[number]),
                 Some(Member::Twice) => continue,
-                Some(Member::Link(_) | Member::Let(_) | Member::Event) | None => {
+                Some(Member::Link(_) | Member::Let(_) | Member::Event(_)) | None => {
                     if !(name.starts_with('_') || name == "i" || name == "index") {
                         plan.misspelt.extend(self.unknown_column(plan.ty, name, *span, data.used));
                     }

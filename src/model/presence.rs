@@ -1,4 +1,4 @@
-//! Pass 4: no flow reads an agent that may not be there, and no rate depends on itself.
+//! Pass 4: no flow and no hazard reads an agent that may not be there, and no rate depends on itself.
 //!
 //! A loop over all expressions, operands first. For each it finds which links must lead somewhere if the value is to
 //! be one (`need`), which certainly do if it is true (`if_true`) and if it is false (`if_false`): a link that is tested by `if`,
@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 
 use super::context::Context;
 use super::error::{ModeError, NameError};
-use super::ir::{BinderId, ExprId, ExprKind, Model, TypeId};
+use super::ir::{BinderId, ExprId, ExprKind, Model, Trigger, TypeId};
 use super::operands::for_each_operand;
 use super::order::find_circle;
 use super::types::Ty;
@@ -62,6 +62,15 @@ pub(super) fn check_presence(context: &mut Context) {
                 };
                 let (state, path) = (ty.states[state].name.clone(), path.describe(&context.model, own));
                 errors.push(ModeError::NoneInFlow { state, path, read: *read, flow: span });
+            }
+        }
+    }
+    for (own, ty) in context.model.types.iter_enumerated() {
+        for transition in &ty.transitions {
+            let Trigger::Rate { claim, .. } = transition.trigger else { continue };
+            if let Some((path, read)) = table.get(&claim).and_then(|needs| needs.need.first()) {
+                let (label, path) = (transition.label.clone(), path.describe(&context.model, own));
+                errors.push(ModeError::NoneInRate { label, path, read: *read });
             }
         }
     }
@@ -157,6 +166,7 @@ fn needs_of(model: &Model, table: &Table, id: ExprId) -> Needs {
         ExprKind::Number(_)
         | ExprKind::Time
         | ExprKind::Local(_)
+        | ExprKind::Received(_)
         | ExprKind::SelfAgent
         | ExprKind::Participant(_)
         | ExprKind::Bound(_)

@@ -32,6 +32,12 @@ impl<'a> Context<'a> {
             self.quantities.insert(value.id, slot.quantity());
             return value;
         }
+        if let Some(number) = scope.received.iter().position(|(value, _)| *value == name) {
+            let slot = scope.received[number].1;
+            let value = self.push(ExprKind::Received(number), slot.ty, span);
+            self.quantities.insert(value.id, slot.quantity());
+            return value;
+        }
         match scope.home {
             Home::Agent(ty, mode) => {
                 if let Some(member) = self.visible_member(ty, mode, name) {
@@ -155,6 +161,7 @@ impl<'a> Context<'a> {
         if !self.imports {
             let bound = scope.bound.iter().map(|(bound, _)| *bound);
             let locals = scope.locals.iter().map(|(local, _)| *local);
+            let received = scope.received.iter().map(|(value, _)| *value);
             let of_file = self.globals.keys().copied();
             let own: Box<dyn Iterator<Item = &str>> = match scope.home {
                 Home::Agent(ty, mode) => {
@@ -169,7 +176,8 @@ impl<'a> Context<'a> {
                 }
                 Home::File | Home::Function | Home::Construction => Box::new(std::iter::empty()),
             };
-            let known = CONSTANTS.iter().copied().chain(bound).chain(locals).chain(of_file).chain(own);
+            let mut known: Vec<&str> = CONSTANTS.to_vec();
+            known.extend(bound.chain(locals).chain(received).chain(of_file).chain(own));
             let similar = closest(name, known);
             self.report(NameError::Unknown { what: "variable", name: name.to_string(), span, similar });
         }
@@ -227,7 +235,7 @@ impl<'a> Context<'a> {
                 _ => return self.wrong(span),
             },
             Member::Twice => return self.wrong(span),
-            Member::Event => {
+            Member::Event(_) => {
                 let help = "events are sent by `emit` and received by `on`";
                 self.report(NameError::NotAValue { name: name.to_string(), what: "an event", span, help });
                 return self.wrong(span);

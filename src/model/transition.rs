@@ -11,7 +11,8 @@ use super::actions::Written;
 use super::context::{Context, Home, Scope, Value};
 use super::dimension::Dimension;
 use super::error::{ActionError, ModeError, NameError, TypeError};
-use super::ir::{BinderId, ExprKind, ModeId, Transition, Trigger, TypeId};
+use super::events::Heard;
+use super::ir::{BinderId, ExprId, ExprKind, ModeId, Transition, Trigger, TypeId};
 use super::types::{Slot, Ty};
 use crate::base::Span;
 use crate::math::Op;
@@ -21,6 +22,13 @@ use crate::syntax::ast::{self, BodyItem, InteractionItem, TriggerKind};
 struct Guard<'a> {
     condition: Value,
     witnesses: Vec<(&'a str, BinderId)>,
+}
+
+/// Whether `rising` and `crossing` may stand in a guard.
+#[derive(Clone, Copy)]
+enum Edges {
+    Allowed,
+    Refused,
 }
 
 /// The names that transitions of one owner have so far.
@@ -99,8 +107,14 @@ impl<'a> Context<'a> {
                 let why = "an interaction has two participants, so `->` behind its guard names neither";
                 self.report(ActionError::ModeChange { span: target.span, why, help });
             }
-            if matches!(item.trigger.kind, TriggerKind::After(_) | TriggerKind::Every(_)) {
-                let word = if matches!(item.trigger.kind, TriggerKind::After(_)) { "after" } else { "every" };
+            let alone = match item.trigger.kind {
+                TriggerKind::When => None,
+                TriggerKind::Rate(_) => Some("rate"),
+                TriggerKind::After(_) => Some("after"),
+                TriggerKind::Every(_) => Some("every"),
+                TriggerKind::On { .. } => Some("on"),
+            };
+            if let Some(word) = alone {
                 self.refuse(format!("`{word}` transitions of interactions"), item.trigger.span);
                 continue;
             }
@@ -118,7 +132,19 @@ impl<'a> Context<'a> {
     /// Everything but label and target; none if the trigger is not supported.
     fn transition(&mut self, home: Home, source: ModeId, item: &'a ast::Transition) -> Option<Transition> {
         let mut scope = Scope::of(home);
-        let guard = item.trigger.guard.as_ref().map(|guard| self.guard(&mut scope, guard));
+        let heard = match &item.trigger.kind {
+            TriggerKind::On { event, binders, sender } => {
+                Some(self.hearing(&mut scope, event, binders, sender.as_ref()))
+            }
+            TriggerKind::When | TriggerKind::After(_) | TriggerKind::Every(_) | TriggerKind::Rate(_) => None,
+        };
+        // What an `on` waits for is asked when its message comes, a hazard is there while its guard is true: nothing rises or crosses.
+        let edges = match item.trigger.kind {
+            TriggerKind::On { .. } | TriggerKind::Rate(_) => Edges::Refused,
+            TriggerKind::When | TriggerKind::After(_) | TriggerKind::Every(_) => Edges::Allowed,
+        };
+        scope.received = heard.as_ref().map_or(Vec::new(), |heard| heard.received.clone());
+        let guard = item.trigger.guard.as_ref().map(|guard| self.guard(&mut scope, guard, edges));
         let condition = guard.as_ref().map(|guard| guard.condition.id);
         let trigger = match &item.trigger.kind {
             TriggerKind::When => Trigger::When(condition.unwrap_or_else(|| self.wrong(item.trigger.span).id)),
@@ -131,13 +157,10 @@ impl<'a> Context<'a> {
                     self.duration(&mut scope, period, "a period", "more than 0 s", |period| period > 0.0);
                 Trigger::Every(period.id, condition)
             }
-            TriggerKind::Rate(_) => {
-                self.refuse("`rate` transitions", item.trigger.span);
-                return None;
-            }
+            TriggerKind::Rate(rate) => self.hazard(&mut scope, rate, condition),
             TriggerKind::On { .. } => {
-                self.refuse("`on` transitions", item.trigger.span);
-                return None;
+                let Heard { events, from, .. } = heard?;
+                Trigger::On { events, from, guard: condition }
             }
         };
         let witnesses = guard.map(|guard| guard.witnesses).unwrap_or_default();
@@ -160,7 +183,8 @@ impl<'a> Context<'a> {
         })
     }
 
-    fn duration(
+    /// A delay or a period; a diagnostic if it is a constant that is not allowed.
+    pub fn duration(
         &mut self,
         scope: &mut Scope<'a>,
         expr: &'a ast::Expr,
@@ -179,13 +203,41 @@ impl<'a> Context<'a> {
         value
     }
 
+    /// A hazard, which is not negative where the guard is true.
+    fn hazard(&mut self, scope: &mut Scope<'a>, expr: &'a ast::Expr, guard: Option<ExprId>) -> Trigger {
+        let per_time = Slot::of(Dimension::ONE).per_time();
+        let rate = self.lower_into(scope, expr, per_time, "a rate");
+        let facts = self.facts[rate.id.index()];
+        if rate.ty != Ty::Wrong && facts.quantified {
+            self.refuse("quantifiers in rates", expr.span);
+        }
+        if rate.ty != Ty::Wrong
+            && facts.closed
+            && let Some(value) = self.evaluate_closed(rate.id)
+            && !(value >= 0.0 && value.is_finite())
+        {
+            self.report(ModeError::BadRate { span: expr.span, value });
+        }
+        let zero = self.number(0.0, Ty::Real, expr.span);
+        let mut claim = self.apply(Op::Le, [zero.id, rate.id], Ty::Bool, expr.span).id;
+        if let Some(guard) = guard {
+            let not = self.apply(Op::Not, [guard], Ty::Bool, expr.span).id;
+            claim = self.apply(Op::Or, [not, claim], Ty::Bool, expr.span).id;
+        }
+        Trigger::Rate { rate: rate.id, guard, claim }
+    }
+
     /// A guard. An `exists` that is all of it, or a term of its outermost `and`, gives its agent to the actions.
-    fn guard(&mut self, scope: &mut Scope<'a>, expr: &'a ast::Expr) -> Guard<'a> {
+    fn guard(&mut self, scope: &mut Scope<'a>, expr: &'a ast::Expr, edges: Edges) -> Guard<'a> {
         let terms = match &expr.kind {
             ast::ExprKind::And(terms) => terms.as_slice(),
             _ => std::slice::from_ref(expr),
         };
-        let values = terms.iter().map(|term| self.lower_guard(scope, term)).collect::<Vec<_>>();
+        let lower = match edges {
+            Edges::Allowed => Self::lower_guard,
+            Edges::Refused => Self::lower_condition,
+        };
+        let values = terms.iter().map(|term| lower(self, scope, term)).collect::<Vec<_>>();
         let mut witnesses: Vec<(&'a str, BinderId)> = Vec::new();
         for (term, value) in terms.iter().zip(&values) {
             let ast::ExprKind::Quantifier(item) = &term.kind else { continue };
@@ -242,7 +294,7 @@ impl<'a> Context<'a> {
             self.report(TypeError::Arguments { function, least: 1, most: 1, found, span });
             return self.wrong(span);
         };
-        let (value, kind): (Value, fn(super::ir::ExprId) -> ExprKind) = if name == "rising" {
+        let (value, kind): (Value, fn(ExprId) -> ExprKind) = if name == "rising" {
             (self.lower_condition(scope, arg), ExprKind::Rising)
         } else {
             (self.lower_number(scope, arg, name), ExprKind::Crossing)

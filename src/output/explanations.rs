@@ -28,7 +28,7 @@ impl<'a> Explanations<'a> {
         let mut lines =
             vec![format!("t = {} s{micro}: `{}` of {who}", number_text(told.time), told.transition)];
         lines.push(format!("  {}: {}", self.place(told.span), self.first_line(told.span)));
-        lines.push(format!("  {}", because(&told.cause)));
+        lines.push(format!("  {}", because(cast, &told.cause)));
         for shown in &told.shown {
             lines.push(format!("    {}", self.comparison(&shown.now)));
             if let Some(before) = &shown.before {
@@ -108,12 +108,13 @@ fn participants(cast: &Cast, agent: Who, other: Option<Who>) -> String {
     format!("{}{}", cast.agent(agent), other.unwrap_or_default())
 }
 
-fn because(cause: &Cause) -> String {
+fn because(cast: &Cast, cause: &Cause) -> String {
     match cause {
         Cause::Flow => "the flow reached its guard:".into(),
         Cause::Entry => "its guard was true on entry:".into(),
         Cause::After { delay } => format!("its delay of {} s was over", number_text(*delay)),
         Cause::Every { period } => format!("its period of {} s had passed", number_text(*period)),
+        Cause::Message { sender } => format!("a message from {} came", cast.agent(*sender)),
         Cause::Write { by } => {
             let by = by.iter().map(|label| format!("`{label}`")).collect::<Vec<_>>().join(", ");
             format!("its guard became true by what {by} wrote:")

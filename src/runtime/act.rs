@@ -13,6 +13,7 @@ use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::fold;
 use crate::runtime::guards::Origin;
 use crate::runtime::lives::{Conceived, Doomed};
+use crate::runtime::mail::Message;
 use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::Depth;
 use crate::runtime::route::{Move, reached, remember, route};
@@ -40,10 +41,23 @@ pub struct Effect {
     exits: Vec<Write>,
     /// Changes of mode.
     pub moves: Vec<Move>,
+    /// Messages, each with its delay, s.
+    pub sent: Vec<(Message, f64)>,
     /// Agents to be made.
     pub conceived: Vec<Conceived>,
     /// Agents to be removed.
     pub doomed: Vec<Doomed>,
+}
+
+/// What the functions of a list of actions are read on.
+#[derive(Clone, Copy)]
+pub struct Rows<'r> {
+    /// The agents that the list reads.
+    pub frame: &'r Frame,
+    /// Who they are.
+    pub slots: &'r Slots,
+    /// Those that `other` leaves out.
+    pub own: &'r [usize],
 }
 
 /// What has been written in a micro-step.
@@ -73,7 +87,7 @@ impl Engine<'_, '_> {
         let (transition, pair) = match self.guards.definition(instance).origin {
             Origin::Transition(transition) => (transition, false),
             Origin::Pair(pair) => (&pair.transition, true),
-            Origin::Claim(_) | Origin::Link(_) => return Ok(Effect::default()),
+            Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => return Ok(Effect::default()),
         };
         let mut effect = Effect::default();
         if let Some(target) = transition.target
@@ -83,6 +97,7 @@ impl Engine<'_, '_> {
             self.exit(&change, &mut effect)?;
             effect.moves.push(change);
         }
+        self.renew_hazard(transition, slots[0], &mut effect);
         let own = self.guards.roots(instance);
         self.run_list(&transition.actions, slots, &own, &transition.label, &mut effect)?;
         if !effect.exits.is_empty() {
@@ -140,6 +155,9 @@ impl Engine<'_, '_> {
                     }
                     effect.writes.push(write);
                 }
+                ActionStep::Draw { .. } | ActionStep::Emit { .. } => {
+                    self.run_send(step, Rows { frame: &list.frame, slots, own }, effect)?;
+                }
                 ActionStep::If { condition, then, otherwise } => {
                     let holds =
                         truth::test(&self.agents, &mut self.present, condition, &list.frame, slots, own);
@@ -151,6 +169,7 @@ impl Engine<'_, '_> {
                     let mut exit = Effect::default();
                     self.exit(&change, &mut exit)?;
                     effect.exits.append(&mut exit.writes);
+                    effect.sent.append(&mut exit.sent);
                     effect.conceived.append(&mut exit.conceived);
                     effect.doomed.append(&mut exit.doomed);
                     effect.moves.push(change);
@@ -189,10 +208,11 @@ impl Engine<'_, '_> {
         self.program.blame(function, 0, &Point { frame, slots: &views, time: self.present.time })
     }
 
-    fn action_not_finite(&mut self, write: &Write, blame: Option<Blame>) -> Reason {
+    /// An action gives a variable a value that is not finite.
+    pub fn action_not_finite(&mut self, write: &Write, blame: Option<Blame>) -> Reason {
         let system = &self.program.types[self.agents.agents[write.agent].ty];
         let variable = match write.target {
-            Target::State(k) => system.states[k].name.clone(),
+            Target::State(k) => system.state_name(k),
             Target::Aux(column) => system.discretes[column - system.layout.discrete(0)].name.clone(),
         };
         Reason::ActionNotFinite {
@@ -215,6 +235,7 @@ impl Engine<'_, '_> {
             for change in &effect.moves {
                 self.enter_mode(change, &mut written);
             }
+            self.send(&effect.sent);
             moves.extend(effect.moves);
             written.conceived.extend(effect.conceived);
             written.doomed.extend(effect.doomed);
@@ -259,6 +280,7 @@ impl Engine<'_, '_> {
             for write in &effect.writes {
                 self.write(write, written);
             }
+            self.send(&effect.sent);
             written.conceived.append(&mut effect.conceived);
             written.doomed.append(&mut effect.doomed);
             self.present.forget();
@@ -410,7 +432,7 @@ pub fn claims(engine: &Engine<'_, '_>, instance: u32, slots: &Slots) -> Vec<(usi
     let (transition, pair): (&TransitionSystem, bool) = match engine.guards.definition(instance).origin {
         Origin::Transition(transition) => (transition, false),
         Origin::Pair(pair) => (&pair.transition, true),
-        Origin::Claim(_) | Origin::Link(_) => return claims,
+        Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => return claims,
     };
     let system = |agent: usize| &engine.program.types[engine.agents.agents[agent].ty];
     let mut regions = |agent: usize, source: usize| {
@@ -455,6 +477,8 @@ fn dooms(steps: &[ActionStep], visit: &mut dyn FnMut(usize)) {
                 dooms(otherwise, visit);
             }
             ActionStep::Assign { .. }
+            | ActionStep::Draw { .. }
+            | ActionStep::Emit { .. }
             | ActionStep::Goto { .. }
             | ActionStep::Stop { .. }
             | ActionStep::Create(_) => {}
@@ -472,6 +496,8 @@ fn gotos(steps: &[ActionStep], visit: &mut dyn FnMut(usize, Destination)) {
                 gotos(otherwise, visit);
             }
             ActionStep::Assign { .. }
+            | ActionStep::Draw { .. }
+            | ActionStep::Emit { .. }
             | ActionStep::Stop { .. }
             | ActionStep::Create(_)
             | ActionStep::Destroy { .. } => {}

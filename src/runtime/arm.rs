@@ -42,6 +42,7 @@ impl<'p> Engine<'p, '_> {
         state.arming += 1;
         state.entry = time;
         state.periods = 0;
+        self.draw_hazard(instance);
         for index in self.guards.atom_range(instance) {
             self.guards.atoms[index].slack = 0.0;
             if !self.guards.atoms[index].left_out && !self.settle_far(index) {
@@ -79,7 +80,7 @@ impl<'p> Engine<'p, '_> {
     fn set_schedule(&mut self, instance: u32) -> Result<(), Failure> {
         let Some(transition) = self.guards.definition(instance).origin.transition() else { return Ok(()) };
         let (function, least) = match &transition.trigger {
-            Trigger::When(_) => return Ok(()),
+            Trigger::When(_) | Trigger::Rate { .. } | Trigger::On { .. } => return Ok(()),
             Trigger::After { delay, .. } => (*delay, 0.0),
             Trigger::Every { period, .. } => (*period, f64::MIN_POSITIVE),
         };
@@ -421,9 +422,9 @@ impl<'p> Engine<'p, '_> {
         }
         let Some(transition) = self.guards.definition(instance).origin.transition() else { return false };
         match &transition.trigger {
-            Trigger::Every { .. } => false,
+            Trigger::Every { .. } | Trigger::On { .. } => false,
             Trigger::After { .. } => state.aged && self.truths().holds_now(instance),
-            Trigger::When(_) => self.truths().holds_now(instance),
+            Trigger::When(_) | Trigger::Rate { .. } => self.truths().holds_now(instance),
         }
     }
 

@@ -13,7 +13,7 @@
 use crate::codegen::program::{ActionList, AgentSystem, Program, Relation};
 use crate::runtime::audit::Audit;
 use crate::runtime::certify::ENDLESS;
-use crate::runtime::definition::{folds_read, guard_of};
+use crate::runtime::definition::{folds_read, gate_of, guard_of};
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::groups::Group;
@@ -35,7 +35,10 @@ pub fn takes(program: &Program) -> bool {
     let of_types = program.types.iter().flat_map(|ty| {
         let claims = ty.modes.iter().flat_map(|mode| &mode.claims);
         let claims = claims.map(|claim| (&claim.frame, Some(&claim.violation)));
-        claims.chain(ty.transitions.iter().map(|transition| (&transition.frame, guard_of(transition))))
+        let guards = ty.transitions.iter().flat_map(|transition| {
+            [guard_of(transition), gate_of(transition)].map(|guard| (&transition.frame, guard))
+        });
+        claims.chain(guards)
     });
     let pairs = program.interactions.iter().flat_map(|interaction| &interaction.transitions);
     let of_pairs = pairs.map(|pair| (&pair.transition.frame, guard_of(&pair.transition)));

@@ -24,6 +24,8 @@ pub enum Listing {
 pub enum Origin<'p> {
     /// A transition of an agent type.
     Transition(&'p TransitionSystem),
+    /// The guard of a `rate` transition, which opens the gate of its hazard.
+    Gate(&'p TransitionSystem),
     /// A transition of an interaction.
     Pair(&'p PairTransition),
     /// An invariant or an assert.
@@ -33,12 +35,12 @@ pub enum Origin<'p> {
 }
 
 impl<'p> Origin<'p> {
-    /// The transition, of an agent type or of an interaction; none for a claim.
+    /// The transition that may fire, of an agent type or of an interaction; none for a gate or a claim.
     pub fn transition(self) -> Option<&'p TransitionSystem> {
         match self {
             Origin::Transition(transition) => Some(transition),
             Origin::Pair(pair) => Some(&pair.transition),
-            Origin::Claim(_) | Origin::Link(_) => None,
+            Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => None,
         }
     }
 }
@@ -77,6 +79,11 @@ pub struct Definition<'p> {
 }
 
 impl Definition<'_> {
+    /// What makes it fire; none for a claim.
+    pub fn trigger(&self) -> Option<&Trigger> {
+        self.origin.transition().map(|transition| &transition.trigger)
+    }
+
     /// The place of the first comparison of an aggregate's filter.
     pub fn base_of(&self, number: usize) -> usize {
         let found = self.folds.binary_search_by_key(&number, |&(number, _)| number);
@@ -102,6 +109,10 @@ pub fn definitions<'p>(agents: &Agents<'p>, listing: Listing) -> Vec<Definition<
             let guard = guard_of(transition);
             let origin = Origin::Transition(transition);
             definitions.push(define(agents, origin, ty, transition.source, &transition.frame, guard));
+            if let Some(gate) = gate_of(transition) {
+                let (origin, frame) = (Origin::Gate(transition), &transition.frame);
+                definitions.push(define(agents, origin, ty, transition.source, frame, Some(gate)));
+            }
         }
         for update in system.links.iter().flat_map(|link| &link.updates) {
             definitions.push(define(agents, Origin::Link(update), ty, 0, &update.frame, Some(&update.stale)));
@@ -136,11 +147,22 @@ fn may_be_listed(definition: &Definition<'_>) -> bool {
         && definition.comparisons.iter().all(|atom| atom.relation != Relation::Crossing)
 }
 
-/// The condition of a transition, if it has one.
+/// The condition of a transition that is followed along the flow, if it has one.
 pub fn guard_of(transition: &TransitionSystem) -> Option<&Guard> {
     match &transition.trigger {
         Trigger::When(guard) => Some(guard),
         Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
+        Trigger::Rate { due, .. } => Some(due),
+        // Asked when a message comes, and not followed.
+        Trigger::On { .. } => None,
+    }
+}
+
+/// The condition of a `rate` transition, which is followed too, if it has one.
+pub fn gate_of(transition: &TransitionSystem) -> Option<&Guard> {
+    match &transition.trigger {
+        Trigger::Rate { guard, .. } => guard.as_ref(),
+        Trigger::When(_) | Trigger::After { .. } | Trigger::Every { .. } | Trigger::On { .. } => None,
     }
 }
 

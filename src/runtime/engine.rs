@@ -16,6 +16,7 @@ use crate::runtime::failure::{Failure, Place, Reason};
 use crate::runtime::groups::{Coupling, Groups};
 use crate::runtime::guards::{Guards, Listing, Origin, TooManyGuards};
 use crate::runtime::limits::Limits;
+use crate::runtime::mail::Mail;
 use crate::runtime::neighbours::Neighbours;
 use crate::runtime::notes::Notes;
 use crate::runtime::observe::{Cell, End, FalseAssert, Last, Observer, Outcome, Stats, TypeStats, Who};
@@ -140,6 +141,8 @@ pub struct Engine<'p, 'o> {
     pub has_thawed: bool,
     /// What is due when.
     pub queues: Queues,
+    /// Messages under way.
+    pub mail: Mail,
     /// Makes rows of trajectories.
     pub recorder: Recorder<'p>,
     /// Watches for Zeno behaviour and chattering.
@@ -222,6 +225,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             points: Vec::new(),
             registers: Vec::new(),
             queues: Queues::default(),
+            mail: Mail::default(),
             notes: observer.wants_reasons().then(|| Box::new(Notes::new(&agents))),
             firings: vec![0; guards.definitions.len()],
             events_of_type: vec![0; program.types.len()],
@@ -302,7 +306,7 @@ impl<'p, 'o> Engine<'p, 'o> {
                 match definition.origin {
                     Origin::Transition(transition) => Some((transition.label.clone(), firings)),
                     Origin::Pair(pair) => Some((pair.transition.label.clone(), firings)),
-                    Origin::Claim(_) | Origin::Link(_) => None,
+                    Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => None,
                 }
             });
         let methods =
@@ -396,7 +400,7 @@ impl<'p, 'o> Engine<'p, 'o> {
     /// Label and place in the source of an instance's transition or claim.
     pub fn label(&self, instance: u32) -> (&'p str, Span) {
         match self.guards.definition(instance).origin {
-            Origin::Transition(transition) => (&transition.label, transition.span),
+            Origin::Transition(transition) | Origin::Gate(transition) => (&transition.label, transition.span),
             Origin::Pair(pair) => (&pair.transition.label, pair.transition.span),
             Origin::Claim(claim) => (claim.message.as_deref().unwrap_or("invariant"), claim.span),
             Origin::Link(update) => (&update.label, update.span),

@@ -11,7 +11,7 @@ use crate::runtime::comparisons::{compare, telling};
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::Failure;
 use crate::runtime::guards::Origin;
-use crate::runtime::instant::Candidate;
+use crate::runtime::instant::{By, Candidate};
 use crate::runtime::notes::Notes;
 use crate::runtime::observe::{Cause, Explanation, ShownComparison, Undecided, WhyUndecided};
 use crate::runtime::population::Agents;
@@ -72,8 +72,14 @@ impl Engine<'_, '_> {
         let (instance, time) = (candidate.instance, self.present.time);
         let state = &self.guards.instances[instance as usize];
         let is_scheduled = |due: f64| (due - time).abs() <= 4.0 * ulp(time);
-        if candidate.pulse.is_some() {
-            return (Cause::Every { period: state.delay }, Before::Nothing);
+        match candidate.by {
+            By::Guard => {}
+            By::Pulse(_) => return (Cause::Every { period: state.delay }, Before::Nothing),
+            By::Message => {
+                let sender = self.mail.sender_at(state.roots[0] as usize);
+                let sender = sender.expect("it fires by the message at its turn");
+                return (Cause::Message { sender }, Before::Nothing);
+            }
         }
         let roots = self.guards.atom_range(instance).map(|index| &self.guards.atoms[index]);
         let near = roots.filter(|atom| atom.rooted).map(|atom| atom.near).min_by(f64::total_cmp);
@@ -142,7 +148,9 @@ impl Engine<'_, '_> {
         let roots = self.guards.roots(instance);
         let is_claim = matches!(self.guards.definition(instance).origin, Origin::Claim(_));
         let (label, span) = match self.guards.definition(instance).origin {
-            Origin::Transition(transition) => (transition.label.clone(), transition.span),
+            Origin::Transition(transition) | Origin::Gate(transition) => {
+                (transition.label.clone(), transition.span)
+            }
             Origin::Pair(pair) => (pair.transition.label.clone(), pair.transition.span),
             Origin::Claim(claim) => (String::new(), claim.span),
             Origin::Link(update) => (update.label.clone(), update.span),

@@ -236,6 +236,32 @@ pub enum Reason {
         /// The transition.
         span: Span,
     },
+    /// A hazard that is negative.
+    NegativeRate {
+        /// Where.
+        place: Place,
+        /// Of which transition.
+        label: String,
+        /// What is compared.
+        compared: Vec<Compared>,
+        /// The transition.
+        span: Span,
+    },
+    /// A draw from a distribution whose parameter is out of range.
+    BadDraw {
+        /// Where.
+        place: Place,
+        /// Which parameter.
+        parameter: String,
+        /// What it has to be.
+        needs: &'static str,
+        /// Its value, SI.
+        value: f64,
+        /// What made it so, if it is not finite.
+        blame: Option<Blame>,
+        /// The action.
+        span: Span,
+    },
     /// A priority that is not a number, so that it orders nothing.
     BadPriority {
         /// Where.
@@ -333,10 +359,24 @@ impl Reason {
             }
             Reason::BadDelay { place, value, blame, span } => {
                 let diagnostic = Diagnostic::error("HY0510", format!("a delay or period of {value} s"))
-                    .label(*span, "of this transition");
+                    .label(*span, "here");
                 place
                     .add_to(with_blame(diagnostic, blame.as_ref()))
                     .help("a delay must be finite and at least 0, a period finite and at least 1e-12 s")
+            }
+            Reason::NegativeRate { place, label, compared, span } => {
+                let title = format!("the rate of `{label}` became negative");
+                let diagnostic = Diagnostic::error("HY0514", title).label(*span, "this transition");
+                place
+                    .add_to(with_compared(diagnostic, compared))
+                    .help("say when the rate counts, `rate ... when ...`, or clamp it: `max(..., 0)`")
+            }
+            Reason::BadDraw { place, parameter, needs, value, blame, span } => {
+                let title = format!("{parameter} is {}, and has to be {needs}", number_text(*value));
+                let diagnostic = Diagnostic::error("HY0513", title).label(*span, "this draw");
+                place
+                    .add_to(with_blame(diagnostic, blame.as_ref().filter(|_| !value.is_finite())))
+                    .help("guard the draw with an `if`, or clamp the parameter: `max(sd, 0)`")
             }
             Reason::BadPriority { place, blame, span } => {
                 let diagnostic = Diagnostic::error("HY0512", "a priority that is not a number")

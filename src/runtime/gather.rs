@@ -7,14 +7,14 @@ use crate::runtime::detect::AtomCurve;
 use crate::runtime::engine::{Due, Engine};
 use crate::runtime::failure::Failure;
 use crate::runtime::guards::Origin;
-use crate::runtime::instant::Candidate;
+use crate::runtime::instant::{By, Candidate};
 use crate::runtime::present::Depth;
 use crate::runtime::solve::roots::Curve;
 use crate::runtime::solve::time_resolution;
 use crate::runtime::truth::Side;
 
 impl Engine<'_, '_> {
-    /// The time of the next change of an atom or of the next scheduled time.
+    /// The time of the next change of an atom, of the next scheduled time, or of the next message.
     pub fn next_cause(&mut self) -> f64 {
         let flips = &mut self.queues.flips;
         while flips.peek().is_some_and(|due| self.guards.atoms[due.number as usize].version != due.version) {
@@ -28,7 +28,7 @@ impl Engine<'_, '_> {
             schedules.pop();
         }
         let time = |due: Option<&Due>| due.map_or(f64::INFINITY, |due| due.time);
-        time(self.queues.flips.peek()).min(time(self.queues.schedules.peek()))
+        time(self.queues.flips.peek()).min(time(self.queues.schedules.peek())).min(self.mail.next_time())
     }
 
     /// Applies the changes that are due at `first`, and executes the instant if something fires.
@@ -42,20 +42,25 @@ impl Engine<'_, '_> {
         }
         let flips = self.pop_flips(window);
         let schedules = self.pop_schedules(window);
+        let arrived = self.mail.arrive(first);
         let seeds: Vec<u32> = flips
             .iter()
             .filter(|due| due.time == first)
             .map(|due| self.guards.atoms[due.number as usize].instance)
             .chain(schedules.iter().filter(|due| due.time == first).map(|due| due.number))
+            .chain(arrived.iter().flat_map(|message| self.listening(message)))
             .collect();
         let (now, later): (Vec<Due>, Vec<Due>) = schedules.into_iter().partition(|due| due.time == first);
         let shares =
             |engine: &Self, instance: u32| seeds.iter().any(|&seed| engine.share_an_agent(seed, instance));
-        let awaited =
-            later.iter().filter(|due| now.is_empty() && shares(self, due.number)).map(|due| due.time);
-        let awaited = awaited.min_by(f64::total_cmp);
+        let is_scheduled = !now.is_empty() || !arrived.is_empty();
+        let awaited = later.iter().filter(|due| shares(self, due.number)).map(|due| due.time);
+        let arriving = self.mail.arriving(first, window).into_iter();
+        let arriving = arriving
+            .filter(|(_, message)| self.listening(message).iter().any(|&instance| shares(self, instance)));
+        let awaited = awaited.chain(arriving.map(|(time, _)| time)).min_by(f64::total_cmp);
         self.queues.schedules.extend(later);
-        if let Some(scheduled) = awaited {
+        if let Some(scheduled) = awaited.filter(|_| !is_scheduled) {
             self.postpone(flips, first, scheduled);
             return Ok(());
         }
@@ -70,7 +75,7 @@ impl Engine<'_, '_> {
                 self.queues.flips.push(due);
             }
         }
-        if now.is_empty() {
+        if !is_scheduled {
             time = self.defined_side(time, near, &changed);
         }
         self.present.go(time);
@@ -94,6 +99,7 @@ impl Engine<'_, '_> {
     /// found at zero, within `tolerance` of g or already beyond.
     pub fn execute_at(&mut self, time: f64, zeros: &[usize], tolerance: f64) -> Result<(), Failure> {
         let now = self.pop_schedules(time);
+        self.mail.arrive(time);
         self.present.go(time);
         let mut concerned: Vec<u32> = Vec::new();
         for &index in zeros {
@@ -121,20 +127,25 @@ impl Engine<'_, '_> {
         }
         concerned.sort_unstable();
         concerned.dedup();
-        let mut claims = false;
+        let (mut claims, mut gates) = (false, false);
         for &instance in &concerned {
             if self.enabled(instance) {
-                candidates.push(Candidate { instance, pulse: None });
+                candidates.push(Candidate { instance, by: By::Guard });
             }
-            claims |= matches!(self.guards.definition(instance).origin, Origin::Claim(_));
+            let origin = self.guards.definition(instance).origin;
+            claims |= matches!(origin, Origin::Claim(_));
+            gates |= matches!(origin, Origin::Gate(_));
         }
         candidates
-            .retain(|candidate| candidate.pulse.is_none() || self.truths().holds_now(candidate.instance));
-        if !candidates.is_empty() {
+            .retain(|candidate| candidate.by == By::Guard || self.truths().holds_now(candidate.instance));
+        if !candidates.is_empty() || self.mail.is_waiting() {
             self.instant(candidates)?;
         }
         if claims {
             self.judge_claims(&concerned)?;
+        }
+        if gates {
+            self.set_gates(&concerned)?;
         }
         for instance in concerned {
             self.calm(instance);
@@ -251,6 +262,6 @@ impl Engine<'_, '_> {
         }
         state.periods += 1;
         self.queue_schedule(instance);
-        Some(Candidate { instance, pulse: Some(self.guards.instances[instance as usize].arming) })
+        Some(Candidate { instance, by: By::Pulse(self.guards.instances[instance as usize].arming) })
     }
 }

@@ -6,7 +6,7 @@
 
 use smallvec::SmallVec;
 
-use crate::codegen::program::{Atom, Near, Quantified, Range, Relation};
+use crate::codegen::program::{Atom, Near, Quantified, Range, Relation, Trigger};
 use crate::math::Interval;
 use crate::runtime::definition::{AtomShape, Definition, definitions};
 pub use crate::runtime::definition::{Listing, Origin};
@@ -138,6 +138,8 @@ pub struct Guards<'p> {
     pub rising: Vec<bool>,
     /// For each agent, the instances of which it is a root.
     pub of_agent: Vec<Vec<u32>>,
+    /// For each agent, its instances that wait for messages.
+    pub hearing: Vec<Vec<u32>>,
     /// For each type, the instances with a quantifier that may read any agent of it.
     pub over_type: Vec<Vec<u32>>,
     /// How many instances range over more than one agent (pairs, and bindings of quantifiers), those listed anew included.
@@ -170,6 +172,7 @@ impl<'p> Guards<'p> {
             atoms: Vec::new(),
             rising: Vec::new(),
             of_agent: vec![Vec::new(); agents.len()],
+            hearing: vec![Vec::new(); agents.len()],
             over_type: vec![Vec::new(); agents.of_type.len()],
             n_pairs: 0,
             free: vec![Vec::new(); definitions.len()],
@@ -207,6 +210,9 @@ impl<'p> Guards<'p> {
         self.atoms.resize(self.atoms.len() + definition.n_atoms, AtomState::new(instance));
         self.rising.resize(self.rising.len() + definition.n_rising, false);
         self.of_agent[roots[0] as usize].push(instance);
+        if let Some(Trigger::On { .. }) = definition.trigger() {
+            self.hearing[roots[0] as usize].push(instance);
+        }
         if matches!(definition.origin, Origin::Pair(_)) {
             self.of_agent[roots[1] as usize].push(instance);
             self.n_pairs += 1;
@@ -232,6 +238,9 @@ impl<'p> Guards<'p> {
         for root in self.roots(instance) {
             self.of_agent[root].push(instance);
         }
+        if let Some(Trigger::On { .. }) = self.definition(instance).trigger() {
+            self.hearing[roots[0] as usize].push(instance);
+        }
         self.n_pairs += 1;
         for index in self.atom_range(instance) {
             let state = &mut self.atoms[index];
@@ -256,6 +265,7 @@ impl<'p> Guards<'p> {
         }
         for root in self.roots(instance) {
             self.of_agent[root].retain(|&other| other != instance);
+            self.hearing[root].retain(|&other| other != instance);
         }
         let number = self.instances[instance as usize].definition as usize;
         for &ty in &self.definitions[number].quantified {
@@ -313,6 +323,7 @@ impl<'p> Guards<'p> {
     pub fn admit(&mut self, place: usize) {
         if place == self.of_agent.len() {
             self.of_agent.push(Vec::new());
+            self.hearing.push(Vec::new());
         }
     }
 
@@ -459,7 +470,7 @@ fn size(agents: &Agents<'_>, definition: &Definition<'_>) -> u128 {
             let pairs = n * other;
             each * if pair.symmetric { pairs / 2 } else { pairs }
         }
-        Origin::Transition(_) | Origin::Claim(_) | Origin::Link(_) => each * n,
+        Origin::Transition(_) | Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => each * n,
     }
 }
 
@@ -468,7 +479,9 @@ fn size(agents: &Agents<'_>, definition: &Definition<'_>) -> u128 {
 fn for_each_binding(agents: &Agents<'_>, definition: &Definition<'_>, visit: &mut dyn FnMut([u32; 2])) {
     for &first in &agents.of_type[definition.ty] {
         match definition.origin {
-            Origin::Transition(_) | Origin::Claim(_) | Origin::Link(_) => visit([first as u32, u32::MAX]),
+            Origin::Transition(_) | Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => {
+                visit([first as u32, u32::MAX]);
+            }
             Origin::Pair(pair) => {
                 for &second in &agents.of_type[definition.frame.slots[1].ty()] {
                     if first != second && (!pair.symmetric || first < second) {

@@ -21,8 +21,19 @@ use crate::runtime::truth::{self, Side};
 pub struct Candidate {
     /// Which.
     pub instance: u32,
-    /// At a time of its `every`, scheduled by this arming.
-    pub pulse: Option<u32>,
+    /// By what.
+    pub by: By,
+}
+
+/// What lets an instance fire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum By {
+    /// That it is armed and true.
+    Guard,
+    /// A time of its `every`, scheduled by this arming.
+    Pulse(u32),
+    /// The message at its turn.
+    Message,
 }
 
 /// A candidate with what orders it (rule 4).
@@ -43,11 +54,18 @@ impl Engine<'_, '_> {
         let mut touched_agents: BTreeSet<(usize, usize)> = BTreeSet::new();
         let mut concerned: Vec<u32> = candidates.iter().map(|candidate| candidate.instance).collect();
         loop {
+            self.deliver();
+            candidates.extend(self.turns());
             candidates.sort_unstable();
             candidates.dedup();
             candidates.retain(|candidate| self.may_fire(*candidate));
             if candidates.is_empty() {
-                break;
+                if !self.mail.is_waiting() {
+                    break;
+                }
+                // Whatever had its turn was missed; more is to come.
+                micro += 1;
+                continue;
             }
             let (chosen, passed) = self.choose(&candidates)?;
             let written = self.fire(&chosen, micro, &mut touched_agents)?;
@@ -68,14 +86,16 @@ impl Engine<'_, '_> {
             }
             concerned.extend(fired.iter().chain(&woken));
             candidates = passed;
+            candidates.retain(|candidate| candidate.by != By::Message);
             let enabled = woken.iter().copied().filter(|&instance| self.enabled(instance));
-            candidates.extend(enabled.map(|instance| Candidate { instance, pulse: None }));
+            candidates.extend(enabled.map(|instance| Candidate { instance, by: By::Guard }));
             micro += 1;
             self.release_crossings(&woken);
         }
         concerned.sort_unstable();
         concerned.dedup();
         self.judge_claims(&concerned)?;
+        self.set_gates(&concerned)?;
         for &instance in &concerned {
             self.calm(instance);
         }
@@ -92,10 +112,14 @@ impl Engine<'_, '_> {
 
     fn may_fire(&self, candidate: Candidate) -> bool {
         let state = &self.guards.instances[candidate.instance as usize];
-        if let Some(arming) = candidate.pulse {
-            return state.active && state.arming == arming && self.truths().holds_now(candidate.instance);
+        match candidate.by {
+            By::Guard => self.enabled(candidate.instance),
+            By::Pulse(arming) => {
+                state.active && state.arming == arming && self.truths().holds_now(candidate.instance)
+            }
+            // It has just been asked.
+            By::Message => true,
         }
-        self.enabled(candidate.instance)
     }
 
     /// Orders the candidates and takes them greedily; those passed over come second.
@@ -131,12 +155,25 @@ impl Engine<'_, '_> {
         Ok((chosen, passed))
     }
 
+    fn is_hazard(&self, instance: u32) -> bool {
+        matches!(self.guards.definition(instance).trigger(), Some(Trigger::Rate { .. }))
+    }
+
     fn rank(&mut self, candidate: Candidate) -> Result<Ranked, Failure> {
-        let slots = self.truths().witnesses(candidate.instance);
+        let slots = match candidate.by {
+            By::Guard if self.is_hazard(candidate.instance) => {
+                let slots = self.guards.slots(&self.agents, candidate.instance);
+                self.answer(candidate.instance).unwrap_or(slots)
+            }
+            By::Guard | By::Pulse(_) => self.truths().witnesses(candidate.instance),
+            By::Message => self.answer(candidate.instance).expect("it has just been asked"),
+        };
         let (transition, depth) = match self.guards.definition(candidate.instance).origin {
             Origin::Transition(transition) => (transition, transition.depth),
             Origin::Pair(pair) => (&pair.transition, 0),
-            Origin::Claim(_) | Origin::Link(_) => unreachable!("only transitions are candidates"),
+            Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => {
+                unreachable!("only transitions are candidates")
+            }
         };
         let mut priority = 0.0;
         if let Some(function) = transition.priority {
@@ -175,6 +212,9 @@ impl Engine<'_, '_> {
             self.explain(ranked.candidate, micro)?;
             self.count_firing(instance)?;
             effects.push(self.effect(instance, &ranked.slots)?);
+            if ranked.candidate.by == By::Message {
+                self.note_heard(instance);
+            }
             self.guards.instances[instance as usize].armed = false;
         }
         for effect in &effects {
@@ -199,11 +239,9 @@ impl Engine<'_, '_> {
     pub fn count_firing(&mut self, instance: u32) -> Result<(), Failure> {
         let definition = self.guards.instances[instance as usize].definition as usize;
         self.firings[definition] += 1;
-        let scheduled = match self.guards.definition(instance).origin {
-            Origin::Transition(transition) => matches!(transition.trigger, Trigger::Every { .. }),
-            Origin::Pair(pair) => matches!(pair.transition.trigger, Trigger::Every { .. }),
-            Origin::Claim(_) | Origin::Link(_) => false,
-        };
+        let trigger = self.guards.definition(instance).trigger();
+        // Whoever emits is counted; that many emit at once is nothing to complain of.
+        let scheduled = matches!(trigger, Some(Trigger::Every { .. } | Trigger::On { .. }));
         let time = self.present.time;
         let finding = self.repetitions.fired(instance, time, scheduled);
         if finding == Finding::Fine {
@@ -238,10 +276,12 @@ impl Engine<'_, '_> {
         let pair = matches!(self.guards.definition(instance).origin, Origin::Pair(_));
         let time = self.present.time;
         let ty = self.agents.agents[ranked.slots[0]].ty;
+        let sender =
+            if ranked.candidate.by == By::Message { self.mail.sender_at(ranked.slots[0]) } else { None };
         let agent = self.agents.who(ranked.slots[0]);
-        let mut event = Event { time, micro, transition: label, agent, other: None, modes: None };
+        let mut event = Event { time, micro, transition: label, agent, other: sender, modes: None };
         if effect.moves.is_empty() {
-            event.other = pair.then(|| self.agents.who(ranked.slots[1]));
+            event.other = if pair { Some(self.agents.who(ranked.slots[1])) } else { sender };
             self.n_events += 1;
             self.events_of_type[ty] += 1;
             self.observer.event(&event)?;
@@ -250,8 +290,10 @@ impl Engine<'_, '_> {
         for change in &effect.moves {
             let modes = &self.program.types[self.agents.agents[change.agent].ty].modes;
             event.agent = self.agents.who(change.agent);
-            let other = ranked.slots.get(usize::from(change.agent == ranked.slots[0]));
-            event.other = other.filter(|_| pair).map(|&other| self.agents.who(other));
+            if pair {
+                let other = ranked.slots.get(usize::from(change.agent == ranked.slots[0]));
+                event.other = other.map(|&other| self.agents.who(other));
+            }
             event.modes = Some((&modes[change.from].path, &modes[change.to].path));
             self.n_events += 1;
             self.events_of_type[ty] += 1;
@@ -328,6 +370,11 @@ impl Engine<'_, '_> {
                     let (place, compared) = (self.place(agent), self.told(instance));
                     let (message, span) = (claim.message.clone(), claim.span);
                     return Err(Reason::InvariantFalse { place, message, compared, span }.into());
+                }
+                ClaimKind::Rate => {
+                    let (place, compared) = (self.place(agent), self.told(instance));
+                    let label = claim.message.clone().unwrap_or_default();
+                    return Err(Reason::NegativeRate { place, label, compared, span: claim.span }.into());
                 }
                 ClaimKind::Assert => {
                     self.guards.instances[instance as usize].armed = false;

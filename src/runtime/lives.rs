@@ -68,7 +68,7 @@ impl Engine<'_, '_> {
         self.agents.agents[creator].created += 1;
         let path = self.agents.draw_path(creator);
         let seed = self.program.run.seed;
-        let word = Key { seed, agent: &path, variable: "create" }.word(count);
+        let word = Key { seed, agent: &path, variable: "create", draw: 0 }.word(count);
         let mut given = Vec::with_capacity(birth.given.len());
         for (variable, source) in &birth.given {
             let mut values = Vec::with_capacity(2);
@@ -102,7 +102,7 @@ impl Engine<'_, '_> {
             return Err(Fate::BadDraw { place, parameter, needs, value: values[wrong], span: *span }.into());
         }
         let (agent, name) = (format!("#{word:016x}"), self.variable(birth.ty, variable).to_string());
-        let key = Key { seed: self.program.run.seed, agent: &agent, variable: &name };
+        let key = Key { seed: self.program.run.seed, agent: &agent, variable: &name, draw: 0 };
         let value = distribution.draw(values, key);
         self.check_start(birth, creator, variable, value, None)?;
         Ok(value)
@@ -181,7 +181,7 @@ impl Engine<'_, '_> {
         let (number, seat, word, created, mode, group) =
             (0, 0, Some(*word), 0, first(&self.program.types[ty], birth.mode), 0);
         let n_states = states.len();
-        let ahead = Ahead::default();
+        let (ahead, draws) = (Ahead::default(), vec![0; self.program.types[ty].streams.len()]);
         let place = self.agents.admit(Agent {
             number,
             ty,
@@ -192,6 +192,7 @@ impl Engine<'_, '_> {
             group,
             states,
             aux,
+            draws,
             segment,
             ahead,
         });
@@ -215,6 +216,8 @@ impl Engine<'_, '_> {
         let system = &program.types[birth.ty];
         let layout = &system.layout;
         let mut row = Row { states: vec![0.0; layout.n_states], aux: vec![0.0; layout.n_aux()] };
+        // What is left of hazards is drawn when their transitions are armed.
+        (0..layout.n_hazards).for_each(|hazard| row.states[layout.hazard(hazard)] = 1.0);
         row.aux[Layout::MODE] = first(system, birth.mode) as f64;
         row.aux[Layout::ENTRY] = self.present.time;
         (0..layout.n_links).for_each(|link| row.aux[layout.link(link)] = -1.0);
@@ -389,6 +392,7 @@ impl Engine<'_, '_> {
         for instance in self.guards.of_agent[agent].clone() {
             self.guards.retire(instance);
         }
+        self.mail.forget(agent);
         self.neighbours.forget(&self.agents, agent);
         self.agents.dismiss(agent);
         self.guards.reseat(&self.agents, agent);

@@ -13,7 +13,7 @@ use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::groups::KinkHit;
 use crate::runtime::guards::Origin;
-use crate::runtime::instant::Candidate;
+use crate::runtime::instant::{By, Candidate};
 use crate::runtime::observe::{End, Progress};
 use crate::runtime::present::Depth;
 use crate::runtime::repetition::Finding;
@@ -97,12 +97,14 @@ impl Engine<'_, '_> {
         let instances = 0..self.guards.instances.len() as u32;
         self.refresh_links(&instances.clone().collect::<Vec<u32>>())?;
         let enabled = instances.clone().filter(|&instance| self.enabled(instance));
-        let candidates = enabled.map(|instance| Candidate { instance, pulse: None }).collect();
+        let candidates = enabled.map(|instance| Candidate { instance, by: By::Guard }).collect();
         self.instant(candidates)?;
         let claims: Vec<u32> = instances
             .filter(|&instance| matches!(self.guards.definition(instance).origin, Origin::Claim(_)))
             .collect();
-        self.judge_claims(&claims)
+        self.judge_claims(&claims)?;
+        let all: Vec<u32> = (0..self.guards.instances.len() as u32).collect();
+        self.set_gates(&all)
     }
 
     /// The end: the last rows, and the state of every agent at T (rule 12).
@@ -201,7 +203,7 @@ impl Engine<'_, '_> {
     /// The name of a state, and where its equation stands.
     fn equation(&self, agent: usize, state: usize) -> (String, Span) {
         let system = &self.program.types[self.agents.agents[agent].ty];
-        (system.states[state].name.clone(), self.agents.flow(agent).spans[state])
+        (system.state_name(state), self.agents.flow(agent).spans[state])
     }
 
     fn chattering(&mut self, hit: &KinkHit, time: f64) -> Reason {

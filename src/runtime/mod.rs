@@ -18,7 +18,8 @@
 //! | 6 t = 0 | locks, groups, entry actions, arming, micro-steps, claims | `masim` |
 //! | 7 after a reset | only what a write concerns restarts | `act` |
 //! | 8 claims | a false invariant ends the run, a false assert is reported | `instant` |
-//! | 11 time | `after` and `every` count from entry, as products | `arm`, `gather` |
+//! | 9 events | what is emitted is heard in the next micro-step, one message an agent, in the order of the senders | `mail`, `hear` |
+//! | 11 time | `after` and `every` count from entry, as products; hazards are integrated with the flow | `arm`, `gather`, `hazard` |
 //! | 12 end | `until`, `stop`, errors; the state of all at that time | `masim`, `repetition` |
 //! | 13 coupling | who read each other's states in their flows step together, a follower after its leader | `groups`, `leaders` |
 //! | 14 reads across agents | a write wakes the guards that read it, and no others | `arm` |
@@ -65,19 +66,24 @@ mod fate;
 mod advance;
 mod stiffness;
 mod repetition;
+mod mail;
 mod record;
 mod neighbours;
 mod engine;
 mod leaders;
 mod point;
+mod asked;
 mod seats;
 mod lives;
 mod act;
+mod send;
 mod arm;
+mod hazard;
 mod near_pairs;
 mod sleep;
 mod foresee;
 mod hot;
+mod hear;
 mod links;
 mod instant;
 mod certify;

@@ -83,6 +83,11 @@ pub enum Cause {
         /// s.
         period: f64,
     },
+    /// A message.
+    Message {
+        /// From whom.
+        sender: Who,
+    },
     /// What these transitions wrote in the micro-step before made its guard true.
     Write {
         /// Their labels.
@@ -143,7 +148,7 @@ pub struct Event<'a> {
     pub transition: &'a str,
     /// The agent (in an interaction: the first participant, or the one whose mode changes).
     pub agent: Who,
-    /// The other participant of an interaction.
+    /// The other participant of an interaction; by an `on` the sender of the message.
     pub other: Option<Who>,
     /// The mode it leaves and the one it enters, as paths; none where no mode changes.
     pub modes: Option<(&'a str, &'a str)>,

@@ -49,6 +49,8 @@ pub struct Agent {
     pub states: Vec<f64>,
     /// Its auxiliary columns; they are always those of the present.
     pub aux: Vec<f64>,
+    /// How many random numbers it has drawn, by stream of its type.
+    pub draws: Vec<u64>,
     /// Its trajectory over its last step.
     pub segment: Segment,
     /// Steps beyond that, for those whose flows read it.
@@ -119,10 +121,26 @@ impl<'p> Agents<'p> {
             begin_histories(system, mode, &mut aux);
             let seat = of_type[ty].len();
             of_type[ty].push(number);
-            let segment = Segment::at(0.0, &instance.states);
-            let (states, ahead) = (instance.states.clone(), Ahead::default());
+            let mut states = instance.states.clone();
+            // What is left of hazards is drawn when their transitions are armed.
+            states.resize(system.layout.n_states, 1.0);
+            let (segment, ahead) = (Segment::at(0.0, &states), Ahead::default());
+            let draws = vec![0; system.streams.len()];
             let (word, created, group) = (None, 0, 0);
-            agents.push(Agent { number, ty, seat, word, created, mode, group, states, aux, segment, ahead });
+            agents.push(Agent {
+                number,
+                ty,
+                seat,
+                word,
+                created,
+                mode,
+                group,
+                states,
+                aux,
+                draws,
+                segment,
+                ahead,
+            });
         }
         let mut linked_from = vec![Vec::new(); agents.len()];
         for (number, instance) in program.population.agents.iter().enumerate() {

@@ -186,14 +186,13 @@ impl Outline {
     fn action(&mut self, action: &Action) {
         match &action.kind {
             ActionKind::Assign { place, given: value } => {
-                let owner = place.owner.iter().map(|owner| format!("{}.", owner.text)).collect::<String>();
-                self.line(&format!("assign {owner}{}{}", place.variable.text, given(value)));
+                self.line(&format!("assign {}{}", place_text(place), given(value)));
             }
             ActionKind::Create(constructor) => self.node("create", |o| o.constructor(constructor)),
             ActionKind::Destroy(agent) => self.line(&format!("destroy {}", Flat(agent))),
             ActionKind::Emit { event, args, delay } => {
                 let args = args.iter().map(|arg| format!(" {}", Flat(arg))).collect::<String>();
-                self.line(&format!("emit {}{args}{}", event.text, clause(" after ", delay)));
+                self.line(&format!("emit {}{args}{}", place_text(event), clause(" after ", delay)));
             }
             ActionKind::ChangeMode { participant, target: to } => {
                 self.line(&format!("{} -> {}", participant.text, target(to)));
@@ -285,6 +284,11 @@ impl Outline {
 
 fn clause(word: &str, expr: &Option<Expr>) -> String {
     expr.iter().map(|expr| format!("{word}{}", Flat(expr))).collect()
+}
+
+fn place_text(place: &Place) -> String {
+    let owner = place.owner.iter().map(|owner| format!("{}.", owner.text)).collect::<String>();
+    format!("{owner}{}", place.variable.text)
 }
 
 fn given(given: &Given) -> String {

@@ -9,6 +9,7 @@ mod evaluate;
 mod world;
 mod boundary;
 mod point;
+mod post;
 mod reference;
 pub mod generate;
 mod compare;
@@ -17,7 +18,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use compare::{Verdict, compare};
-use dice::WITH_AGGREGATES;
+use dice::{WITH_AGGREGATES, WITH_EVENTS};
 use hyc::model::ir::Integrator;
 
 /// A number from the environment.
@@ -79,6 +80,11 @@ fn engine_and_reference_tell_the_same_story_of_random_models() {
 #[test]
 fn so_they_do_of_models_with_aggregates() {
     tell_the_same_story(Integrator::Auto, WITH_AGGREGATES + setting("HYC_FIRST").unwrap_or(0));
+}
+
+#[test]
+fn so_they_do_of_models_with_events() {
+    tell_the_same_story(Integrator::Auto, WITH_EVENTS + setting("HYC_FIRST").unwrap_or(0));
 }
 
 #[test]

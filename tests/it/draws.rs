@@ -1,6 +1,8 @@
 //! Does a random initial value belong to seed, agent and variable, and to nothing else?
 
-use crate::harness::{Case, all_near, refused, simulate};
+use hyc::math::draw::{Distribution, Key};
+
+use crate::harness::{Case, all_near, near, refused, simulate, simulate_error};
 
 /// Cars whose values are all drawn.
 const CARS: &str = "
@@ -162,8 +164,74 @@ fn what_is_no_distribution_is_refused() {
     assert!(whole.contains("HY0225") && whole.contains("k: int = floor(u)"), "{whole}");
 }
 
+/// What one agent draws in actions, in order.
+fn in_actions(text: &str, agent: &str) -> Vec<f64> {
+    let run = Case::new(text).run();
+    run.column(agent, 0).into_iter().map(|(_, value)| value).collect()
+}
+
 #[test]
-fn draws_in_actions_are_refused_by_name() {
-    let text = refused("agent A { state x = 0  flow { x' = 1 }  when x >= 1 { x ~ Uniform(0, 1) } }");
-    assert!(text.contains("HY0290") && text.contains("draws by `~` in actions"), "{text}");
+fn draws_in_actions_are_numbers_one_two_three_of_the_variable() {
+    // the initial value is draw 0; draw n has the words 2 n and 2 n + 1
+    let text = |other: &str| {
+        format!(
+            "agent A {{ discrete x ~ Exponential(1), y = 0  every 1 {{ x ~ Exponential(1) }} {other} }}
+             agent B {{ discrete z = 0  every 0.3 {{ z ~ Normal(0, 1) }} }}
+             system {{ as = A[2]()  b = B() }}
+             run {{ until 3.5  seed 5  record as.x every 1 to \"x.csv\" }}"
+        )
+    };
+    let alone = in_actions(&text(""), "as[1]");
+    assert_eq!(alone.len(), 4);
+    let key = |draw| Key { seed: 5, agent: "as[1]", variable: "x", draw };
+    let expected: Vec<f64> = (0..4).map(|n| Distribution::Exponential.draw(&[1.0], key(n))).collect();
+    assert_eq!(alone, expected);
+    // whatever else is drawn, and when
+    assert_eq!(in_actions(&text("every 0.7 { y ~ Uniform(0, 1) }"), "as[1]"), alone);
+}
+
+#[test]
+fn draws_in_actions_read_parameters_and_units() {
+    let run = simulate(
+        "agent A(sd: real [ms]) { discrete t: real [ms] = 0, u: real [1/s] = 0  state x = 3  flow { x' = 0 }
+           when time >= 1 [s] { t ~ Normal(5, sd)  u ~ Exponential(2 [ms])  x ~ Uniform(x, x + 1e-9) } }
+         system { a = A(sd = 1e-9) }  run { until 2 }",
+    );
+    near(run.value("a.t"), 5.0, 1e-7);
+    assert!(run.value("a.u") > 0.0);
+    near(run.value("a.x"), 3.0, 1e-9);
+    let text = refused("agent A { discrete t: real [ms] = 0  when time >= 1 [s] { t ~ Normal(5 [m], 1) } }");
+    assert!(text.contains("HY0231"), "{text}");
+    let text = refused("agent A { discrete n: int = 0  when time >= 1 [s] { n ~ Uniform(0, 6) } }");
+    assert!(text.contains("HY0225"), "{text}");
+    let text = refused("agent A { discrete x = 0  when time >= 1 [s] { x ~ Uniform(0) } }");
+    assert!(text.contains("HY0226"), "{text}");
+}
+
+#[test]
+fn parameters_of_draws_in_actions_are_in_range() {
+    let (run, found) = simulate_error(
+        "agent A { state sd = 1  discrete x = 0  flow { sd' = -1 }  every 0.75 { x ~ Normal(0, sd) } }
+         system { a = A() }  run { until 4 }",
+    );
+    assert_eq!((found.code, run.time), ("HY0513", 1.5));
+}
+
+#[test]
+fn an_interaction_draws_for_each_of_its_agents() {
+    let text = |more: &str| {
+        format!(
+            "agent A(v: real) {{ state x = 0  discrete k = 0  flow {{ x' = v }} }}
+             interaction Meet(a: A, b: A) {{ pair: when abs(a.x - b.x) <= 1 {{ a.k ~ Uniform(0, 1)  b.k ~ Uniform(0, 1) }} }}
+             system {{ {more} p = A(v = 1)  q = A(v = 0, x = 5) }}  run {{ until 10  seed 3 }}"
+        )
+    };
+    let [alone, more] = [text(""), text("far = A(v = 0, x = 100)")].map(|text| simulate(&text));
+    for (agent, name) in [("p.k", "p"), ("q.k", "q")] {
+        let key = Key { seed: 3, agent: name, variable: "k", draw: 1 };
+        assert_eq!(alone.value(agent), Distribution::Uniform.draw(&[0.0, 1.0], key));
+        assert_eq!(more.value(agent), alone.value(agent));
+    }
+    // one flag a pair: the actions are the same when the two change places
+    assert_eq!(alone.events.len(), 1);
 }

@@ -38,6 +38,7 @@ mod paper;
 mod compare;
 mod differential;
 mod draws;
+mod systems_biology;
 mod units;
 mod robust;
 mod chains;

@@ -5,6 +5,7 @@ mod stick_slip;
 mod aircraft;
 mod sector;
 mod genetic_switch;
+mod poisson_gene;
 mod relay_clock;
 mod navigation;
 mod collide_and_stick;

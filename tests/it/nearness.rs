@@ -41,7 +41,9 @@ fn interaction(guard: &str) -> System {
 fn guard(trigger: &Trigger) -> &Guard {
     match trigger {
         Trigger::When(guard) => guard,
-        Trigger::After { .. } | Trigger::Every { .. } => panic!("it waits"),
+        Trigger::After { .. } | Trigger::Every { .. } | Trigger::On { .. } | Trigger::Rate { .. } => {
+            panic!("it waits")
+        }
     }
 }
 

@@ -16,6 +16,7 @@ pub fn guard(transition: &TransitionSystem) -> Option<&Guard> {
     match &transition.trigger {
         Trigger::When(guard) => Some(guard),
         Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
+        Trigger::On { guard, .. } | Trigger::Rate { guard, .. } => guard.as_ref(),
     }
 }
 
@@ -28,7 +29,7 @@ pub fn plain_guard(transition: &TransitionSystem) -> Option<&Guard> {
             };
             (guard.n_rising == 0 && !guard.atoms.iter().any(crosses)).then_some(guard)
         }
-        Trigger::After { .. } | Trigger::Every { .. } => None,
+        Trigger::After { .. } | Trigger::Every { .. } | Trigger::On { .. } | Trigger::Rate { .. } => None,
     }
 }
 
@@ -108,14 +109,14 @@ pub fn effect<'s>(ty: &'s AgentSystem, transition: &'s TransitionSystem) -> Effe
 fn conditional(steps: &[ActionStep], found: &mut FxHashSet<Target>) {
     for step in steps {
         match step {
-            ActionStep::Assign { target, .. } => {
+            ActionStep::Assign { target, .. } | ActionStep::Draw { target, .. } => {
                 found.insert(*target);
             }
             ActionStep::If { then, otherwise, .. } => {
                 conditional(then, found);
                 conditional(otherwise, found);
             }
-            ActionStep::Goto { .. } | ActionStep::Stop { .. } => {}
+            ActionStep::Emit { .. } | ActionStep::Goto { .. } | ActionStep::Stop { .. } => {}
             ActionStep::Create(_) | ActionStep::Destroy { .. } => {}
         }
     }
@@ -125,7 +126,10 @@ fn stops(steps: &[ActionStep]) -> bool {
     steps.iter().any(|step| match step {
         ActionStep::Stop { .. } | ActionStep::Create(_) | ActionStep::Destroy { .. } => true,
         ActionStep::If { then, otherwise, .. } => stops(then) || stops(otherwise),
-        ActionStep::Assign { .. } | ActionStep::Goto { .. } => false,
+        ActionStep::Assign { .. }
+        | ActionStep::Draw { .. }
+        | ActionStep::Emit { .. }
+        | ActionStep::Goto { .. } => false,
     })
 }
 

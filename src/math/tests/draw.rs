@@ -10,7 +10,7 @@ fn sample(distribution: Distribution, parameters: &[f64], seed: u64) -> Vec<f64>
     let mut values: Vec<f64> = (0..N)
         .map(|k| {
             let agent = format!("cars[{k}]");
-            distribution.draw(parameters, Key { seed, agent: &agent, variable: "v" })
+            distribution.draw(parameters, Key { seed, agent: &agent, variable: "v", draw: 0 })
         })
         .collect();
     values.sort_by(f64::total_cmp);
@@ -86,7 +86,7 @@ fn samples_have_the_moments_of_their_distributions() {
 #[test]
 fn neighbouring_keys_are_not_correlated() {
     let unit = |agent: &str, variable: &str, seed| {
-        Distribution::Uniform.draw(&[-1.0, 1.0], Key { seed, agent, variable })
+        Distribution::Uniform.draw(&[-1.0, 1.0], Key { seed, agent, variable, draw: 0 })
     };
     let mut sums = [0.0; 4];
     for k in 0..N {
@@ -103,7 +103,7 @@ fn neighbouring_keys_are_not_correlated() {
 /// The bits as another implementation has them, written in Python after the paper and checked against its test vector.
 #[test]
 fn bits_are_pinned() {
-    let key = Key { seed: 1, agent: "cars[3]", variable: "v" };
+    let key = Key { seed: 1, agent: "cars[3]", variable: "v", draw: 0 };
     assert_eq!([key.word(0), key.word(1)], [0xb74d_7906_31b8_0e35, 0x7051_79ca_fe6b_a6ca]);
     let u = ((key.word(0) >> 12) as f64 + 0.5) / 4_503_599_627_370_496.0;
     assert_eq!(Distribution::Exponential.draw(&[2.0], key), -elementary::log(u) / 2.0);
@@ -124,7 +124,7 @@ fn parameters_out_of_range_are_named() {
 
 #[test]
 fn a_distribution_without_width_gives_its_value() {
-    let key = Key { seed: 9, agent: "a", variable: "x" };
+    let key = Key { seed: 9, agent: "a", variable: "x", draw: 0 };
     for value in [0.1, -3.7, 1e300, f64::MIN_POSITIVE] {
         assert_eq!(Distribution::Uniform.draw(&[value, value], key), value);
         assert_eq!(Distribution::Normal.draw(&[value, 0.0], key), value);

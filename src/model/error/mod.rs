@@ -4,11 +4,13 @@ pub(super) mod names;
 pub(super) mod types;
 pub(super) mod dimensions;
 pub(super) mod modes;
+pub(super) mod events;
 pub(super) mod data;
 pub(super) mod imports;
 
 pub(super) use data::{FileError, LimitError, OverrideError, RunError, SystemError, TableError, ValueError};
 pub(super) use dimensions::{DimensionError, Evidence, Side};
+pub(super) use events::EventError;
 pub(super) use imports::ImportError;
 pub(super) use modes::{ActionError, ModeError};
 pub(super) use names::NameError;

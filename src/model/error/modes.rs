@@ -24,6 +24,10 @@ pub(in crate::model) enum ModeError {
     NoneInFlow { state: String, path: String, read: Span, flow: Span },
     /// `rising` or `crossing` outside of a guard.
     EdgeOutsideGuard { name: String, span: Span },
+    /// The rate of a transition reads an agent that may not be there.
+    NoneInRate { label: String, path: String, read: Span },
+    /// A hazard that is none.
+    BadRate { span: Span, value: f64 },
     /// A period that is not positive, or a negative delay.
     BadPeriod { what: &'static str, needs: &'static str, span: Span, value: f64 },
 }
@@ -101,10 +105,20 @@ impl From<ModeError> for Diagnostic {
                     if flow == read { diagnostic } else { diagnostic.label(flow, "in this flow") };
                 diagnostic.help(format!("say what holds without it: `if {path} then ... else ...`"))
             }
+            ModeError::NoneInRate { label, path, read } => Diagnostic::error(
+                "HY0245",
+                format!("the rate of `{label}` may read `{path}` while it is none"),
+            )
+            .label(read, format!("`{path}` may be none here"))
+            .help(format!("say when it counts: `rate ... when {path}`, or `if {path} then ... else 0`")),
+            ModeError::BadRate { span, value } => {
+                Diagnostic::error("HY0219", "a rate must be finite, and 0 1/s or more")
+                    .label(span, format!("this is {value} 1/s"))
+            }
             ModeError::EdgeOutsideGuard { name, span } => {
                 Diagnostic::error("HY0246", format!("`{name}` has a meaning only in a guard"))
                     .label(span, "not a guard, or inside something else than `and`, `or`, `not`")
-                    .help("write it behind `when`, joined to other conditions by `and`, `or` and `not` only")
+                    .help("write it behind `when`, but not of an `on` or a `rate`, joined to other conditions by `and`, `or` and `not` only")
             }
             ModeError::BadPeriod { what, needs, span, value } => {
                 Diagnostic::error("HY0247", format!("{what} must be {needs}"))

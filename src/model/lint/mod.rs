@@ -6,6 +6,7 @@
 
 mod warning;
 mod unused;
+mod events;
 mod unreached;
 mod settled;
 mod repeated;
@@ -30,6 +31,7 @@ pub(super) fn lint(context: &mut Context) -> Vec<Diagnostic> {
     unused::definitions(context, &mut found);
     unused::members(context, &mut found);
     unused::bound(context, &mut found);
+    events::idle(context, &mut found);
     unreached::modes(context, &mut found);
     lookalike::names(context, &mut found);
     beside::numbers(context, &mut found);
@@ -57,6 +59,7 @@ fn guard(transition: &Transition) -> Option<ExprId> {
     match transition.trigger {
         Trigger::When(guard) => Some(guard),
         Trigger::After(_, guard) | Trigger::Every(_, guard) => guard,
+        Trigger::On { guard, .. } | Trigger::Rate { guard, .. } => guard,
     }
 }
 

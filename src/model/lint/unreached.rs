@@ -55,7 +55,8 @@ fn gotos(list: &[Action], types: &[TypeId; 2], starts: &mut [Vec<ModeId>]) {
                 gotos(then, types, starts);
                 gotos(otherwise, types, starts);
             }
-            Action::Assign { .. } | Action::Stop { .. } | Action::Create(_) | Action::Destroy { .. } => {}
+            Action::Assign { .. } | Action::Draw { .. } | Action::Emit { .. } | Action::Stop { .. } => {}
+            Action::Create(_) | Action::Destroy { .. } => {}
         }
     }
 }

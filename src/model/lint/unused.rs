@@ -16,7 +16,7 @@ use crate::model::types::Ty;
 use crate::syntax::ast::Formal;
 
 /// A name that says of itself that it is not used.
-fn meant(name: &str) -> bool {
+pub(super) fn meant(name: &str) -> bool {
     name.starts_with('_')
 }
 
@@ -57,7 +57,7 @@ pub(super) fn definitions(context: &Context, found: &mut Vec<Warning>) {
 }
 
 /// Whether the file makes no agents.
-fn is_library(model: &Model) -> bool {
+pub(super) fn is_library(model: &Model) -> bool {
     model.population.blocks.is_empty()
 }
 
@@ -129,14 +129,10 @@ fn read(model: &Model) -> FxHashSet<(TypeId, VarRef)> {
 /// The discrete variables that some action writes.
 fn written(model: &Model) -> FxHashSet<(TypeId, usize)> {
     let mut written = FxHashSet::default();
-    let own = model.types.iter().flat_map(|ty| {
-        let modes = ty.modes.iter().flat_map(|mode| [&mode.entry, &mode.exit]);
-        modes.chain(ty.transitions.iter().map(|transition| &transition.actions))
-    });
-    let pairs = model.interactions.iter().flat_map(|interaction| &interaction.transitions);
-    for list in own.chain(pairs.map(|transition| &transition.actions)) {
+    for list in lists(model) {
         each_action(list, &mut |action| {
-            if let Action::Assign { agent, variable: VarRef::Discrete(k), .. } = action
+            if let Action::Assign { agent, variable: VarRef::Discrete(k), .. }
+            | Action::Draw { agent, variable: VarRef::Discrete(k), .. } = action
                 && let Some(ty) = Ty::from(model.exprs[*agent].ty).agent_type()
             {
                 written.insert((ty, *k));
@@ -146,8 +142,18 @@ fn written(model: &Model) -> FxHashSet<(TypeId, usize)> {
     written
 }
 
+/// All lists of actions.
+pub(super) fn lists(model: &Model) -> impl Iterator<Item = &Vec<Action>> {
+    let own = model.types.iter().flat_map(|ty| {
+        let modes = ty.modes.iter().flat_map(|mode| [&mode.entry, &mode.exit]);
+        modes.chain(ty.transitions.iter().map(|transition| &transition.actions))
+    });
+    let pairs = model.interactions.iter().flat_map(|interaction| &interaction.transitions);
+    own.chain(pairs.map(|transition| &transition.actions))
+}
+
 /// Calls `each` with every action, those in branches included.
-fn each_action<'m>(list: &'m [Action], each: &mut dyn FnMut(&'m Action)) {
+pub(super) fn each_action<'m>(list: &'m [Action], each: &mut dyn FnMut(&'m Action)) {
     for action in list {
         each(action);
         if let Action::If { then, otherwise, .. } = action {
@@ -201,6 +207,14 @@ fn participants(model: &Model, interaction: &Interaction, formals: &[Formal], fo
             }
             each_action(&transition.actions, &mut |action| match action {
                 Action::Assign { agent, value, .. } => roots.extend([*agent, *value]),
+                Action::Draw { agent, parameters, .. } => {
+                    roots.push(*agent);
+                    roots.extend(parameters);
+                }
+                Action::Emit { agent, values, delay, .. } => {
+                    roots.push(*agent);
+                    roots.extend(values.iter().chain(delay));
+                }
                 Action::If { condition, .. } => roots.push(*condition),
                 Action::Goto { participant, .. } => moved |= *participant == which,
                 Action::Create(create) => {

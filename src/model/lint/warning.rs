@@ -8,6 +8,8 @@ pub(super) enum Warning {
     Unused { name: String, what: String, span: Span },
     /// A discrete variable that nothing reads; whether anything writes it.
     NeverRead { name: String, agent: String, span: Span, written: bool },
+    /// An event that nobody emits, or nobody hears.
+    IdleEvent { name: String, agent: String, span: Span, emitted: bool, heard: bool },
     /// An agent type of which `system` makes no agent.
     NoAgents { name: String, span: Span },
     /// A mode in which no agent ever is.
@@ -41,6 +43,16 @@ impl From<Warning> for Diagnostic {
                 Diagnostic::warning("HY0602", format!("the discrete variable `{name}` is never read"))
                     .label(span, label)
                     .help(format!("leave it out, `record` it, or call it `_{name}`"))
+            }
+            Warning::IdleEvent { name, agent, span, emitted, heard } => {
+                let (title, help) = match (emitted, heard) {
+                    (false, true) => ("nobody emits", format!("emit it: `emit {name}`")),
+                    (true, _) => ("nobody hears", format!("hear it: `on {name}`")),
+                    (false, false) => ("nobody emits or hears", "leave it out".to_string()),
+                };
+                Diagnostic::warning("HY0615", format!("{title} the event `{name}`"))
+                    .label(span, format!("an event of `{agent}`"))
+                    .help(format!("{help}, or call it `_{name}` if that is how it should be"))
             }
             Warning::NoAgents { name, span } => {
                 Diagnostic::warning("HY0603", format!("there are no agents of type `{name}`"))

@@ -37,8 +37,8 @@ pub enum ActionKind {
     Destroy(Expr),
     /// `emit braking(3) after 1 [s]`
     Emit {
-        /// The event.
-        event: Name,
+        /// The event, in an interaction behind its sender and a dot.
+        event: Place,
         /// What it carries.
         args: Vec<Expr>,
         /// When it is delivered.
@@ -71,12 +71,12 @@ pub struct Branch {
     pub actions: Actions,
 }
 
-/// What an assignment writes: `x`, or `a.x` of a participant.
+/// What an action names: `x`, or `a.x` of a participant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
     /// The agent before the dot.
     pub owner: Option<Name>,
-    /// The variable.
+    /// The variable, or the event.
     pub variable: Name,
     /// Both.
     pub span: Span,

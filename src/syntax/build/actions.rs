@@ -68,7 +68,7 @@ impl Builder<'_> {
 
     fn emit(&mut self, mut parts: Parts<'_>) -> Result<ActionKind, Unread> {
         parts.expect(Rule::kw_emit)?;
-        let event = self.name(parts.expect(Rule::name)?);
+        let event = self.place(parts.expect(Rule::place)?)?;
         let args = parts.next_if(Rule::call_args)?.map(|args| self.call_args(args)).transpose()?;
         let delay = match parts.has(Rule::kw_after)? {
             true => Some(self.time(parts.expect(Rule::expr)?)?),

@@ -222,11 +222,7 @@ impl Printer {
     fn action(&mut self, action: &Action) {
         match &action.kind {
             ActionKind::Assign { place, given } => {
-                if let Some(owner) = &place.owner {
-                    self.put(&owner.text);
-                    self.put(".");
-                }
-                self.put(&place.variable.text);
+                self.place(place);
                 self.given(" := ", given);
             }
             ActionKind::Create(constructor) => {
@@ -235,7 +231,8 @@ impl Printer {
             }
             ActionKind::Destroy(agent) => self.word_and("destroy ", agent),
             ActionKind::Emit { event, args, delay } => {
-                self.head("emit ", event);
+                self.put("emit ");
+                self.place(event);
                 if !args.is_empty() {
                     self.put("(");
                     self.list(args, |p, arg| p.expr(arg));
@@ -254,6 +251,14 @@ impl Printer {
             }
             ActionKind::If { branches, otherwise } => self.branches(branches, otherwise),
         }
+    }
+
+    fn place(&mut self, place: &Place) {
+        if let Some(owner) = &place.owner {
+            self.put(&owner.text);
+            self.put(".");
+        }
+        self.put(&place.variable.text);
     }
 
     fn branches(&mut self, branches: &[Branch], otherwise: &Option<Actions>) {

@@ -3,18 +3,27 @@
 /// Models from this number on have aggregates (`count`, `sum`, ...) besides.
 pub const WITH_AGGREGATES: u64 = 1_000_000;
 
+/// Models from this number on have events, and no aggregates.
+pub const WITH_EVENTS: u64 = 2_000_000;
+
 /// The state of the generator.
 pub struct Dice {
     state: u64,
     /// Whether aggregates may be written.
     pub aggregates: bool,
+    /// Whether events may be written.
+    pub events: bool,
 }
 
 impl Dice {
     /// The dice of one model.
     pub fn new(seed: u64) -> Self {
         let state = seed.wrapping_mul(0xD134_2543_DE82_EF95).wrapping_add(0x2545_F491_4F6C_DD1D);
-        Self { state, aggregates: seed >= WITH_AGGREGATES }
+        Self {
+            state,
+            aggregates: (WITH_AGGREGATES..WITH_EVENTS).contains(&seed),
+            events: seed >= WITH_EVENTS,
+        }
     }
 
     fn next(&mut self) -> u64 {

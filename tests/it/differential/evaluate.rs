@@ -33,6 +33,8 @@ pub struct Scope<'a> {
     pub bound: Vec<(BinderId, usize)>,
     /// Arguments of the function whose body is being read.
     pub locals: Vec<Value>,
+    /// What the message carries that is being heard.
+    pub received: Vec<f64>,
     /// Comparisons whose truth is decided (rule 3).
     pub decided: &'a [(Literal, bool)],
     /// Which way every branch of the expressions went.
@@ -49,6 +51,7 @@ impl<'a> Scope<'a> {
             pair,
             bound: Vec::new(),
             locals: Vec::new(),
+            received: Vec::new(),
             decided: &[],
             branches: None,
         }
@@ -101,6 +104,7 @@ impl<'a> Scope<'a> {
                 self.locals = outside;
                 return value;
             }
+            ExprKind::Received(k) => self.received[*k],
             ExprKind::Number(x) => *x,
             ExprKind::Time => self.world.time,
             ExprKind::State(of, k) => {

@@ -22,6 +22,8 @@ struct Shape {
     tuned: bool,
     /// The type of the agent that its link `mate` leads to.
     mate: Option<usize>,
+    /// It has an event `ping` that carries a real.
+    pings: bool,
     agents: usize,
 }
 
@@ -70,6 +72,7 @@ fn shapes(dice: &mut Dice) -> Vec<Shape> {
             keeps: dice.percent(30),
             tuned: dice.percent(40),
             mate: dice.percent(35).then(|| dice.below(n)),
+            pings: dice.events && (k == 0 || dice.percent(60)),
             agents,
         }
     };
@@ -100,6 +103,9 @@ fn agent(dice: &mut Dice, shapes: &[Shape], shape: &Shape, text: &mut String) {
     }
     if !discretes.is_empty() {
         let _ = writeln!(text, "  discrete {}", discretes.join(", "));
+    }
+    if shape.pings {
+        text.push_str("  event ping(w: real)\n");
     }
     // each state flows the same in all modes, or in each mode in its own way
     let (mut outer, mut inner) = (Vec::new(), Vec::new());
@@ -204,7 +210,11 @@ fn transition(
         views.push(View { prefix: "mate.", shape: &shapes[mate] });
     }
     let mut witness = None;
+    let hears = dice.events && dice.percent(40);
+    let hazards = dice.events && dice.percent(25);
     let trigger = match dice.below(10) {
+        _ if hears => heard(dice, shapes, shape, &views),
+        _ if hazards => hazard(dice, &views),
         0 => format!("after {} [s]", dice.number(0.2, 1.5)),
         1 => format!("after {} [s] when {}", dice.number(0.2, 1.0), condition(dice, &views, 1)),
         2 => format!("every {} [s]", dice.number(0.3, 1.5)),
@@ -234,11 +244,53 @@ fn transition(
     if let Some(set) = witness {
         views.push(View { prefix: "o.", shape: set });
     }
-    if !moves || dice.percent(60) {
+    if hears && dice.percent(70) {
+        let (state, c) = (dice.pick(&shape.states), dice.number(-0.5, 0.5));
+        let _ = write!(text, " {{ {state} := 0.6*w + {c}{} }}", emission(dice, shape, "", &views));
+    } else if !moves || dice.percent(60) {
         let n = 1 + dice.below(2);
         let _ = write!(text, " {{ {} }}", writes(dice, shape, "", &views, n));
     }
     text.push('\n');
+}
+
+/// What fires at random.
+fn hazard(dice: &mut Dice, views: &[View<'_>]) -> String {
+    let rate = match dice.below(4) {
+        0 => format!("0.3*{}^2", real(dice, &views[0])),
+        1 => format!("1 + 0.8*sin({})", real(dice, &views[0])),
+        _ => dice.number(0.4, 2.5),
+    };
+    let guard = if dice.percent(60) { format!(" when {}", condition(dice, views, 1)) } else { String::new() };
+    format!("rate {rate}{guard}")
+}
+
+/// What waits for a message.
+fn heard(dice: &mut Dice, shapes: &[Shape], shape: &Shape, views: &[View<'_>]) -> String {
+    let from = match (dice.below(4), shape.mate) {
+        (0, _) if shape.pings => " from self",
+        (1 | 2, Some(mate)) if shapes[mate].pings => " from mate",
+        _ => "",
+    };
+    let sign = *dice.pick(&["<=", ">="]);
+    let guard = match dice.below(5) {
+        0 => format!(" when {}", condition(dice, views, 1)),
+        1 => format!(" when w {sign} {}", real(dice, &views[0])),
+        2 => format!(" when w {sign} {} or {}", dice.number(-0.5, 0.5), comparison(dice, views)),
+        _ => String::new(),
+    };
+    format!("on ping(w){from}{guard}")
+}
+
+/// Perhaps an event that the target emits.
+fn emission(dice: &mut Dice, shape: &Shape, target: &str, views: &[View<'_>]) -> String {
+    if !shape.pings || !dice.percent(45) {
+        return String::new();
+    }
+    let value = if dice.percent(50) { dice.number(-1.0, 1.0) } else { real(dice, &views[0]) };
+    let delay =
+        if dice.percent(50) { format!(" after {} [s]", dice.number(0.05, 0.9)) } else { String::new() };
+    format!("  emit {target}ping({value}){delay}")
 }
 
 /// A guard over a set; whether the agent it finds may be named in the actions.
@@ -374,7 +426,7 @@ fn writes(dice: &mut Dice, shape: &Shape, target: &str, views: &[View<'_>], n: u
             list.push(write(dice));
         }
     }
-    list.join("  ")
+    list.join("  ") + &emission(dice, shape, target, views)
 }
 
 fn value(dice: &mut Dice, name: &str, left: &str, shape: &Shape, views: &[View<'_>]) -> String {

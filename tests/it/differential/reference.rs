@@ -4,6 +4,7 @@
 //! if one may fire, or a branch in a flow went another way, the step is bisected to the earliest such time.
 
 use hyc::math::Op;
+use hyc::math::draw::{Distribution, Key};
 use hyc::model::ir::{
     Action, ExprId, ExprKind, InteractionId, ModeId, Model, Transition, Trigger, TypeId, VarRef,
 };
@@ -11,6 +12,7 @@ use hyc::model::ir::{
 use super::boundary::Boundary;
 use super::evaluate::Scope;
 use super::point;
+use super::post::{Message, Post};
 use super::world::World;
 
 /// A row of the event log.
@@ -64,6 +66,10 @@ struct Instance {
     k: u32,
     /// At a time of its `every` that has not been used yet.
     pulse: bool,
+    /// How often its mode has been entered.
+    entries: usize,
+    /// How often its hazard has been drawn.
+    draws: u64,
 }
 
 /// The simulator at work.
@@ -72,6 +78,7 @@ pub struct Reference<'a> {
     world: World,
     instances: Vec<Instance>,
     rows: Vec<Row>,
+    post: Post,
     /// When a branch in a flow went another way, s.
     branchings: Vec<f64>,
     end: f64,
@@ -82,6 +89,18 @@ struct Taken {
     instance: usize,
     moves: Vec<(usize, ModeId)>,
     writes: Vec<(usize, VarRef, f64)>,
+    sent: Vec<(Message, f64)>,
+}
+
+/// What a list of actions does.
+#[derive(Default)]
+struct Done {
+    /// The values that it assigns.
+    writes: Vec<(usize, VarRef, f64)>,
+    /// All variables that it might write.
+    all: Vec<(usize, VarRef)>,
+    /// The messages that it sends, each with its delay, s.
+    sent: Vec<(Message, f64)>,
 }
 
 /// How a model is run.
@@ -123,6 +142,8 @@ impl<'a> Reference<'a> {
             boundary: Boundary::default(),
             k: 1,
             pulse: false,
+            entries: 0,
+            draws: 0,
         };
         let n = world.agents.len();
         for (id, interaction) in model.interactions.iter_enumerated() {
@@ -142,7 +163,8 @@ impl<'a> Reference<'a> {
             }
         }
         let end = model.run.until.expect("the generator writes an end");
-        Self { model, world, instances, rows: Vec::new(), branchings: Vec::new(), end }
+        let post = Post::new(n);
+        Self { model, world, instances, rows: Vec::new(), post, branchings: Vec::new(), end }
     }
 
     fn transition(&self, instance: usize) -> &'a Transition {
@@ -177,7 +199,7 @@ impl<'a> Reference<'a> {
     /// The next time that a transition is scheduled for.
     fn due(&self, instance: usize) -> Option<f64> {
         let (delay, times) = match self.transition(instance).trigger {
-            Trigger::When(_) => return None,
+            Trigger::When(_) | Trigger::On { .. } | Trigger::Rate { .. } => return None,
             Trigger::After(delay, _) => (delay, 1.0),
             Trigger::Every(period, _) => (period, f64::from(self.instances[instance].k)),
         };
@@ -186,12 +208,37 @@ impl<'a> Reference<'a> {
         Some(if (due - self.end).abs() <= 4.0 * f64::EPSILON * self.end { self.end } else { due })
     }
 
+    /// Where what is left of the hazard of a transition stands among the states.
+    fn hazard(&self, world: &World, instance: usize) -> usize {
+        let agent = &world.agents[self.instances[instance].agents[0]];
+        let ty = &self.model.types[agent.ty];
+        let number = self.instances[instance].transition;
+        let before = ty.transitions[..number].iter();
+        let before = before.filter(|transition| matches!(transition.trigger, Trigger::Rate { .. })).count();
+        agent.first + ty.states.len() + before
+    }
+
+    /// Draws what is left of the hazard of a transition anew, if it has one.
+    fn draw(&mut self, instance: usize) {
+        let transition = self.transition(instance);
+        if let Trigger::Rate { .. } = transition.trigger {
+            let place = self.hazard(&self.world, instance);
+            self.instances[instance].draws += 1;
+            let agent = self.model.population.agent_name(self.instances[instance].agents[0]);
+            let draw = self.instances[instance].draws;
+            let key = Key { seed: self.model.run.seed, agent: &agent, variable: &transition.label, draw };
+            self.world.states[place] = Distribution::Exponential.draw(&[1.0], key);
+        }
+    }
+
     /// The condition of a transition in a world of these modes.
     fn holds(&self, world: &World, instance: usize) -> bool {
         let (guard, ripe) = match self.transition(instance).trigger {
             Trigger::When(guard) => (Some(guard), true),
             Trigger::After(_, guard) => (guard, self.due(instance).is_some_and(|due| world.time >= due)),
             Trigger::Every(_, guard) => (guard, self.instances[instance].pulse),
+            Trigger::Rate { .. } => return world.states[self.hazard(world, instance)] <= 0.0,
+            Trigger::On { .. } => return false,
         };
         let Some(guard) = guard else { return ripe };
         let mut scope = self.scope(world, instance);
@@ -204,7 +251,8 @@ impl<'a> Reference<'a> {
     fn enabled(&self, world: &World, instance: usize) -> bool {
         let armed = match self.transition(instance).trigger {
             Trigger::Every(..) => self.instances[instance].pulse,
-            Trigger::When(_) | Trigger::After(..) => self.instances[instance].armed,
+            Trigger::When(_) | Trigger::After(..) | Trigger::Rate { .. } => self.instances[instance].armed,
+            Trigger::On { .. } => return false,
         };
         armed && self.is_active(instance) && self.holds(world, instance)
     }
@@ -218,15 +266,21 @@ impl<'a> Reference<'a> {
         // Entry actions of the modes of one depth read nothing of each other.
         let depth = 2;
         for level in 0..depth {
-            let mut writes = Vec::new();
+            let mut done = Done::default();
             for agent in 0..self.world.agents.len() {
                 let modes: Vec<ModeId> = self.world.modes_of(self.model, agent).into_iter().collect();
                 let Some(mode) = modes.get(level) else { continue };
                 let entry = &self.model.types[self.world.agents[agent].ty].modes[*mode].entry;
                 let mut own = Scope::new(self.model, &self.world, [agent, agent], false);
-                collect(entry, &mut own, &mut writes, &mut Vec::new());
+                collect(entry, &mut own, &mut done);
             }
-            self.write(&writes);
+            self.write(&done.writes);
+            self.send(done.sent);
+        }
+        for instance in 0..self.instances.len() {
+            if self.is_active(instance) {
+                self.draw(instance);
+            }
         }
         self.arm();
         self.instant()
@@ -241,6 +295,89 @@ impl<'a> Reference<'a> {
                 VarRef::Param(_) | VarRef::Link(_) | VarRef::Let(_) => panic!("nobody writes this"),
             }
         }
+    }
+
+    fn send(&mut self, sent: Vec<(Message, f64)>) {
+        for (message, delay) in sent {
+            let time = self.world.time + delay;
+            let is_end = (time - self.end).abs() <= 4.0 * f64::EPSILON * self.end;
+            let time = if is_end { self.end } else { time };
+            if delay > 0.0 { self.post.later.push((time, message)) } else { self.post.sent.push(message) }
+        }
+    }
+
+    /// Whether a transition is an `on` for a message from whoever sent it.
+    fn hears(&self, instance: usize, message: &Message) -> bool {
+        let Trigger::On { events, from, .. } = &self.transition(instance).trigger else { return false };
+        let own = self.instances[instance].agents[0];
+        let mut scope = self.scope(&self.world, instance);
+        let is_listened_to = match from {
+            None => own != message.sender,
+            Some(from) if matches!(self.model.exprs[*from].kind, ExprKind::SelfAgent) => {
+                own == message.sender
+            }
+            Some(from) => own != message.sender && scope.named(*from) == message.sender,
+        };
+        is_listened_to && events.contains(&message.event)
+    }
+
+    /// Messages come to whom they are for, in the order of their senders.
+    fn deliver(&mut self) {
+        let mut sent = std::mem::take(&mut self.post.sent);
+        sent.sort_by_key(|message| message.sender);
+        for message in sent {
+            for agent in 0..self.world.agents.len() {
+                let own = |instance: &usize| {
+                    !self.is_pair(*instance) && self.instances[*instance].agents[0] == agent
+                };
+                let is_for =
+                    (0..self.instances.len()).filter(own).any(|instance| self.hears(instance, &message));
+                if is_for {
+                    self.post.inboxes[agent].waiting.push(message.clone());
+                }
+            }
+        }
+    }
+
+    /// The transitions that the messages at their turns enable; those that enable none are missed.
+    fn turns(&mut self) -> Vec<usize> {
+        let mut enabled = Vec::new();
+        for agent in 0..self.world.agents.len() {
+            while let Some(message) = self.post.inboxes[agent].waiting.first().cloned() {
+                let before = self.post.inboxes[agent].clone();
+                let found: Vec<(usize, usize)> = (0..self.instances.len())
+                    .filter(|instance| {
+                        !self.is_pair(*instance)
+                            && self.instances[*instance].agents[0] == agent
+                            && self.is_active(*instance)
+                            && self.hears(*instance, &message)
+                            && self.answers(*instance, &message)
+                    })
+                    .map(|instance| (instance, self.instances[instance].entries))
+                    .filter(|found| !before.heard || before.enabled.contains(found))
+                    .collect();
+                let inbox = &mut self.post.inboxes[agent];
+                if !found.is_empty() {
+                    enabled.extend(found.iter().map(|(instance, _)| *instance));
+                    (inbox.begun, inbox.enabled) = (true, found);
+                    break;
+                }
+                let begun = inbox.begun;
+                inbox.next();
+                if !begun {
+                    break;
+                }
+            }
+        }
+        enabled
+    }
+
+    /// Whether the condition of an `on` holds.
+    fn answers(&self, instance: usize, message: &Message) -> bool {
+        let Trigger::On { guard: Some(guard), .. } = self.transition(instance).trigger else { return true };
+        let mut scope = self.scope(&self.world, instance);
+        scope.received = message.values.clone();
+        scope.truth(guard)
     }
 
     /// Flags of guards that are false are set.
@@ -259,6 +396,7 @@ impl<'a> Reference<'a> {
     fn advance(&mut self, pace: Pace) -> Option<()> {
         let active = (0..self.instances.len()).filter(|instance| self.is_active(*instance));
         let due = active.filter_map(|instance| self.due(instance)).filter(|due| *due > self.world.time);
+        let due = due.chain(self.post.next_time());
         let stop = due.fold(self.end.min(self.world.time + pace.step), f64::min);
         let (mut after, mut straight) = self.world.flow_with_branches(self.model, stop);
         if !straight || self.any_enabled(&after) {
@@ -298,6 +436,7 @@ impl<'a> Reference<'a> {
             let boundary = std::mem::take(&mut self.instances[instance].boundary);
             self.instances[instance].boundary = boundary.later(scope, &self.world);
         }
+        self.post.come(self.world.time);
         self.arm();
         self.instant()
     }
@@ -314,7 +453,9 @@ impl<'a> Reference<'a> {
         (0..self.instances.len()).filter(|instance| self.is_active(*instance)).any(|instance| {
             let condition = match self.transition(instance).trigger {
                 Trigger::When(guard) | Trigger::After(_, Some(guard)) => guard,
-                Trigger::After(_, None) | Trigger::Every(..) => return false,
+                Trigger::After(_, None) | Trigger::Every(..) | Trigger::On { .. } | Trigger::Rate { .. } => {
+                    return false;
+                }
             };
             let (agents, pair) = (self.instances[instance].agents, self.is_pair(instance));
             point::Guard { model: self.model, agents, pair, condition }.hangs_on_a_point(&self.world, end)
@@ -328,9 +469,14 @@ impl<'a> Reference<'a> {
             .filter(|k| self.instances[*k].pulse && !self.enabled(&self.world, *k))
             .collect();
         loop {
-            let taken = self.choose();
+            self.deliver();
+            let heard = self.turns();
+            let taken = self.choose(&heard);
             if taken.is_empty() {
-                break;
+                if self.post.is_empty() {
+                    break;
+                }
+                continue;
             }
             // Whether that time is still going on when what unrelated agents did has made the guard true, is open.
             if taken.iter().any(|taken| late.contains(&taken.instance)) {
@@ -361,20 +507,25 @@ impl<'a> Reference<'a> {
                 let scope = self.scope(&self.world, instance);
                 self.is_active(instance) && self.instances[instance].boundary.is_left_open(scope, guard)
             }
-            Trigger::After(_, None) | Trigger::Every(_, None) => false,
+            Trigger::After(_, None) | Trigger::Every(_, None) | Trigger::On { .. } | Trigger::Rate { .. } => {
+                false
+            }
         };
         piled_up || (0..self.instances.len()).any(stays)
     }
 
     /// The transitions of the next micro-step with what they do, greedily in their order.
-    fn choose(&self) -> Vec<Taken> {
+    /// Those of `heard` are enabled by messages.
+    fn choose(&self, heard: &[usize]) -> Vec<Taken> {
         let mut enabled: Vec<usize> =
             (0..self.instances.len()).filter(|instance| self.enabled(&self.world, *instance)).collect();
+        enabled.extend(heard);
+        enabled.sort_unstable();
         let rank = |instance: &usize| {
             let transition = self.transition(*instance);
-            let priority = transition
-                .priority
-                .map_or(0.0, |priority| self.scope(&self.world, *instance).number(priority));
+            let mut scope = self.scope(&self.world, *instance);
+            scope.received = self.received(*instance);
+            let priority = transition.priority.map_or(0.0, |priority| scope.number(priority));
             // interactions stand beside what an agent does in every mode
             let depth = if self.is_pair(*instance) {
                 0
@@ -402,18 +553,28 @@ impl<'a> Reference<'a> {
         chosen
     }
 
+    /// What the message at its turn carries.
+    fn received(&self, instance: usize) -> Vec<f64> {
+        let waiting = &self.post.inboxes[self.instances[instance].agents[0]].waiting;
+        waiting.first().map_or(Vec::new(), |message| message.values.clone())
+    }
+
     /// What a transition does, read on the present state, and all that it might write.
     fn effect(&self, instance: usize) -> (Taken, Vec<(usize, VarRef)>) {
         let transition = self.transition(instance);
         let agents = self.instances[instance].agents;
         let mut moves: Vec<(usize, ModeId)> =
             transition.target.iter().map(|target| (agents[0], target.mode)).collect();
-        let (mut writes, mut all) = (Vec::new(), Vec::new());
+        let mut done = Done::default();
         let mut scope = self.scope(&self.world, instance);
+        scope.received = self.received(instance);
         let decided = self.instances[instance].boundary.decided(&mut scope, &self.world);
         scope.decided = &decided;
-        if let Trigger::When(guard) | Trigger::After(_, Some(guard)) | Trigger::Every(_, Some(guard)) =
-            transition.trigger
+        if let Trigger::When(guard)
+        | Trigger::After(_, Some(guard))
+        | Trigger::Every(_, Some(guard))
+        | Trigger::On { guard: Some(guard), .. }
+        | Trigger::Rate { guard: Some(guard), .. } = transition.trigger
         {
             self.bind_witnesses(guard, transition, &mut scope);
         }
@@ -426,11 +587,13 @@ impl<'a> Reference<'a> {
         for (agent, target) in &moves {
             let modes = &self.model.types[self.world.agents[*agent].ty].modes;
             let mut own = Scope::new(self.model, &self.world, [*agent, *agent], false);
-            collect(&modes[self.world.agents[*agent].mode].exit, &mut own, &mut writes, &mut all);
-            collect(&modes[*target].entry, &mut own, &mut Vec::new(), &mut all);
+            collect(&modes[self.world.agents[*agent].mode].exit, &mut own, &mut done);
+            let mut entry = Done::default();
+            collect(&modes[*target].entry, &mut own, &mut entry);
+            done.all.extend(entry.all);
         }
-        collect(&transition.actions, &mut scope, &mut writes, &mut all);
-        (Taken { instance, moves, writes }, all)
+        collect(&transition.actions, &mut scope, &mut done);
+        (Taken { instance, moves, writes: done.writes, sent: done.sent }, done.all)
     }
 
     /// Binds the agents that the actions may name: the lowest for which the quantifier holds (rule 2).
@@ -458,27 +621,30 @@ impl<'a> Reference<'a> {
         }
         for taken in &taken {
             self.write(&taken.writes);
+            self.send(taken.sent.clone());
+            if let Trigger::On { .. } = self.transition(taken.instance).trigger {
+                let agent = self.instances[taken.instance].agents[0];
+                let inbox = &mut self.post.inboxes[agent];
+                inbox.heard = true;
+                inbox.enabled.retain(|(instance, _)| *instance != taken.instance);
+            }
             self.instances[taken.instance].armed = false;
             if std::mem::take(&mut self.instances[taken.instance].pulse) {
                 self.instances[taken.instance].k += 1;
             }
         }
         let moves: Vec<(usize, ModeId)> = taken.iter().flat_map(|taken| taken.moves.clone()).collect();
-        let mut writes = Vec::new();
+        let mut done = Done::default();
         for (agent, target) in &moves {
             self.world.agents[*agent].mode = *target;
             self.world.agents[*agent].entered = self.world.time;
         }
         for (agent, target) in &moves {
             let entry = &self.model.types[self.world.agents[*agent].ty].modes[*target].entry;
-            collect(
-                entry,
-                &mut Scope::new(self.model, &self.world, [*agent, *agent], false),
-                &mut writes,
-                &mut Vec::new(),
-            );
+            collect(entry, &mut Scope::new(self.model, &self.world, [*agent, *agent], false), &mut done);
         }
-        self.write(&writes);
+        self.write(&done.writes);
+        self.send(done.sent);
         for instance in 0..self.instances.len() {
             let fired = taken.iter().any(|taken| taken.instance == instance);
             let own = self.instances[instance].agents[0];
@@ -487,6 +653,10 @@ impl<'a> Reference<'a> {
             if entered {
                 let instance = &mut self.instances[instance];
                 (instance.armed, instance.k, instance.pulse) = (true, 1, false);
+                instance.entries += 1;
+            }
+            if entered || fired && self.is_active(instance) {
+                self.draw(instance);
             }
             if fired || entered {
                 self.instances[instance].boundary = self.settle(instance);
@@ -499,7 +669,9 @@ impl<'a> Reference<'a> {
     fn settle(&self, instance: usize) -> Boundary {
         let guard = match self.transition(instance).trigger {
             Trigger::When(guard) | Trigger::After(_, Some(guard)) => guard,
-            Trigger::After(_, None) | Trigger::Every(..) => return Boundary::default(),
+            Trigger::After(_, None) | Trigger::Every(..) | Trigger::On { .. } | Trigger::Rate { .. } => {
+                return Boundary::default();
+            }
         };
         Boundary::settle(self.scope(&self.world, instance), &self.world, guard)
     }
@@ -507,6 +679,9 @@ impl<'a> Reference<'a> {
     fn log(&mut self, taken: &Taken) {
         let agents = self.instances[taken.instance].agents;
         let pair = self.is_pair(taken.instance);
+        let heard = matches!(self.transition(taken.instance).trigger, Trigger::On { .. });
+        let sender = self.post.inboxes[agents[0]].waiting.first().map(|message| message.sender);
+        let sender = sender.filter(|_| heard);
         let row = |agent, other, modes| Row {
             time: self.world.time,
             label: self.transition(taken.instance).label.clone(),
@@ -521,42 +696,46 @@ impl<'a> Reference<'a> {
         for (agent, target) in &taken.moves {
             let other = if *agent == agents[0] { agents[1] } else { agents[0] };
             let modes = (path(*agent, self.world.agents[*agent].mode), path(*agent, *target));
-            rows.push(row(*agent, pair.then_some(other), Some(modes)));
+            rows.push(row(*agent, if pair { Some(other) } else { sender }, Some(modes)));
         }
         if rows.is_empty() {
-            rows.push(row(agents[0], pair.then_some(agents[1]), None));
+            rows.push(row(agents[0], if pair { Some(agents[1]) } else { sender }, None));
         }
         self.rows.extend(rows);
     }
 }
 
-/// The values that a list of actions assigns, and all variables that it might write.
-fn collect(
-    actions: &[Action],
-    scope: &mut Scope<'_>,
-    writes: &mut Vec<(usize, VarRef, f64)>,
-    all: &mut Vec<(usize, VarRef)>,
-) {
+/// Adds what a list of actions does.
+fn collect(actions: &[Action], scope: &mut Scope<'_>, done: &mut Done) {
     for action in actions {
         match action {
             Action::Assign { agent, variable, value, .. } => {
                 let agent = scope.named(*agent);
-                writes.retain(|write| (write.0, write.1) != (agent, *variable));
-                writes.push((agent, *variable, scope.number(*value)));
-                all.push((agent, *variable));
+                done.writes.retain(|write| (write.0, write.1) != (agent, *variable));
+                done.writes.push((agent, *variable, scope.number(*value)));
+                done.all.push((agent, *variable));
+            }
+            Action::Emit { agent, event, values, delay, .. } => {
+                let sender = scope.named(*agent);
+                let values = values.iter().map(|value| scope.number(*value)).collect();
+                let event = (scope.world.agents[sender].ty, *event);
+                let delay = delay.map_or(0.0, |delay| scope.number(delay));
+                done.sent.push((Message { sender, event, values }, delay));
             }
             Action::If { condition, then, otherwise } => {
                 let holds = scope.truth(*condition);
                 for (branch, goes) in [(then, holds), (otherwise, !holds)] {
-                    let mut branch_writes = Vec::new();
-                    collect(branch, scope, &mut branch_writes, all);
+                    let mut inside = Done::default();
+                    collect(branch, scope, &mut inside);
+                    done.all.extend(inside.all);
                     if goes {
-                        writes.extend(branch_writes);
+                        done.writes.extend(inside.writes);
+                        done.sent.extend(inside.sent);
                     }
                 }
             }
             Action::Goto { .. } => {}
-            Action::Stop { .. } | Action::Create(_) | Action::Destroy { .. } => {
+            Action::Stop { .. } | Action::Draw { .. } | Action::Create(_) | Action::Destroy { .. } => {
                 panic!("the generator writes none of these")
             }
         }

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use hyc::model::ir::{ModeId, Model, TypeId};
+use hyc::model::ir::{ModeId, Model, Trigger, TypeId};
 
 use super::evaluate::Scope;
 
@@ -11,7 +11,7 @@ use super::evaluate::Scope;
 pub struct World {
     /// s.
     pub time: f64,
-    /// The states of all agents, one after the other.
+    /// The states of all agents, one after the other; behind those of each agent, what is left of its hazards.
     pub states: Vec<f64>,
     /// What else there is to know of the agents.
     pub agents: Vec<Agent>,
@@ -53,6 +53,7 @@ impl World {
                 links: agent.links.clone(),
             });
             world.states.extend(&agent.states);
+            world.states.extend(model.types[agent.ty].rates().map(|_| 1.0));
         }
         world
     }
@@ -77,6 +78,17 @@ impl World {
                     let mut scope = Scope::new(model, self, [k, k], false);
                     scope.branches = Some(&branches);
                     rates[agent.first + state] += scope.number(*rate);
+                }
+            }
+            let ty = &model.types[agent.ty];
+            for (hazard, transition) in ty.rates().enumerate() {
+                let Trigger::Rate { rate, guard, .. } = transition.trigger else { continue };
+                let mut scope = Scope::new(model, self, [k, k], false);
+                let open = guard.is_none_or(|guard| scope.truth(guard));
+                branches.borrow_mut().push(open);
+                if open && self.modes_of(model, k).contains(&transition.source) {
+                    scope.branches = Some(&branches);
+                    rates[agent.first + ty.states.len() + hazard] -= scope.number(rate);
                 }
             }
         }

@@ -12,7 +12,7 @@ use hyc::runtime::paper::Form;
 
 use super::crowd;
 use super::forms::{TOLERANCE, both, difference};
-use crate::differential::dice::WITH_AGGREGATES;
+use crate::differential::dice::{WITH_AGGREGATES, WITH_EVENTS};
 use crate::differential::generate;
 use crate::harness::Case;
 
@@ -121,6 +121,11 @@ fn the_forms_agree_on_random_models() {
 #[test]
 fn the_forms_agree_on_random_models_with_aggregates() {
     agree(WITH_AGGREGATES, 60, &LONG, &generate::model);
+}
+
+#[test]
+fn the_forms_agree_on_random_models_with_events() {
+    agree(WITH_EVENTS, 100, &LONG, &generate::model);
 }
 
 #[test]
