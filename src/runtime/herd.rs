@@ -319,8 +319,8 @@ impl<'p> Herd<'p> {
             (x[i], last_x[i]) = (lanes.x[i].0[lane], lanes.last_x[i].0[lane]);
         }
         let mut since: [Interval; STATES_MAX] = [Interval::WHOLE; STATES_MAX];
-        for i in 0..n {
-            since[i] = Interval { lo: lanes.lows[i].0[lane], hi: lanes.highs[i].0[lane] };
+        for (since, (low, high)) in since.iter_mut().zip(lanes.lows.iter().zip(&lanes.highs)) {
+            *since = Interval { lo: low.0[lane], hi: high.0[lane] };
         }
         let steps_max = if lanes.is_tracked[lane] { u32::MAX } else { STEPS_MAX };
         for _ in 0..steps_max {
