@@ -22,7 +22,7 @@ const SHORTEST: f64 = 1e-6;
 /// The most by which the time of a list, or of a window, grows or shrinks from one to the next.
 const GROW: f64 = 2.0;
 /// The share of agents that are hot at which a window is long enough.
-const HOT_WANTED: f64 = 0.02;
+const HOT_WANTED: f64 = 0.01;
 /// The share of agents whose steps are kept at which it is.
 const TRACKED_WANTED: f64 = 0.2;
 /// A window in which agents take more steps than this is long enough, too.
