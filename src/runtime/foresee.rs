@@ -14,14 +14,12 @@ use crate::runtime::sleep::StateBoxes;
 /// So many pieces of a window are looked at.
 const PIECES_MAX: usize = 24;
 /// A piece that is a smaller share of what is looked at is not divided.
-const PIECE_LEAST: f64 = 1.0 / 64.0;
+const PIECE_LEAST: f64 = 1.0 / 16.0;
 
 impl Engine<'_, '_> {
-    /// Certifies a comparison by tracks up to `until`; or up to where it is not certain that it does not change, and false.
+    /// Certifies a comparison that can be bounded by tracks up to `until`; or up to where it is not certain that it does not
+    /// change, and false.
     pub fn foresee(&mut self, index: usize, until: f64) -> bool {
-        if !self.is_bounded(index) {
-            return false;
-        }
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
         let state = self.guards.atoms[index];
         let mut pieces: SmallVec<[(f64, f64); 8]> = SmallVec::new();

@@ -69,10 +69,15 @@ impl Engine<'_, '_> {
     fn follow_doubts(&mut self, doubtful: Vec<Due>, until: f64) {
         for due in doubtful {
             let index = due.number as usize;
-            if !self.foresee(index, until) {
-                // Nor will it sleep by the boxes of its agents' groups.
-                self.guards.atoms[index].skip = SKIP;
+            if self.is_bounded(index) {
+                if self.foresee(index, until) {
+                    continue;
+                }
+            } else {
+                self.queues.uncertified.push(due);
             }
+            // Nor will it sleep by the boxes of its agents' groups.
+            self.guards.atoms[index].skip = SKIP;
         }
     }
 

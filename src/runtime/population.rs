@@ -236,16 +236,6 @@ impl<'p> Agents<'p> {
         followers
     }
 
-    /// How far an agent has come whose group's clock is `clock`, and its states there. If that is beyond the present, an event
-    /// may yet cut it away.
-    #[inline]
-    pub fn anchor(&self, agent: usize, clock: f64) -> (f64, &[f64]) {
-        match self.cold.now(agent) {
-            Some(now) => now,
-            None => (clock, &self.agents[agent].states),
-        }
-    }
-
     /// What is read of an agent that is absent.
     pub fn absent_row(&self) -> &[f64] {
         &self.absent

@@ -3,7 +3,7 @@
 //! Rates that are bounded whatever the states are (a speed times a cosine, a saturated input) bound the way of a state
 //! for as long as the agent follows the same flow with the same parameters; a state whose rate is bounded by those has
 //! bounds too. These are kept until the agent's group changes its version. The way begins at an anchor, where the agent
-//! has come to ([`Agents::anchor`]): if that is beyond the present, an event may cut it away, and the box with it. Other states
+//! has come to ([`anchor`]): if that is beyond the present, an event may cut it away, and the box with it. Other states
 //! have a box by Picard's operator ([`Enclosures`]), or none.
 
 use smallvec::SmallVec;
@@ -110,7 +110,7 @@ impl Reaches {
         let group = &groups[number];
         let first = self.kept[agent].first as usize;
         if is_alone(group) && to <= self.time_end {
-            let (t, states) = agents.anchor(agent, group.clock);
+            let (t, states) = anchor(agents, groups, agent);
             self.refresh(agents, group, agent, (t, states));
             let span = Interval { lo: from - t, hi: to - t };
             for (&x, &rate) in states.iter().zip(&self.rates[first..first + n]) {
@@ -213,6 +213,15 @@ impl Reaches {
     /// x + way, with room for what the integration may be off by.
     fn padded(&self, x: f64, way: Interval) -> Interval {
         self.accuracy.padded(Interval { lo: x, hi: x }.add(way))
+    }
+}
+
+/// How far an agent has come, and its states there. If that is beyond the present, an event may yet cut it away.
+#[inline]
+pub fn anchor<'a>(agents: &'a Agents<'_>, groups: &[Group], agent: usize) -> (f64, &'a [f64]) {
+    match agents.cold.now(agent) {
+        Some(now) => now,
+        None => (groups[agents.agents[agent].group].clock, &agents.agents[agent].states),
     }
 }
 

@@ -10,6 +10,7 @@ use crate::runtime::engine::Engine;
 use crate::runtime::paper::Form;
 use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::{Boxes, Depth, depth_read};
+use crate::runtime::reach::anchor;
 use crate::runtime::solve::control::Accuracy;
 
 /// For each slot, bounds of the states of the agent in it.
@@ -103,8 +104,7 @@ impl Engine<'_, '_> {
         let by_links = definition.frame.slots.iter().any(|slot| matches!(slot, Slot::Link { .. }));
         let mut latest = if by_links { f64::INFINITY } else { 0.0 };
         for agent in atom.slots.iter().map(|&slot| slots[slot]) {
-            let clock = self.groups.groups[self.agents.agents[agent].group].clock;
-            let since = self.agents.anchor(agent, clock).0;
+            let since = anchor(&self.agents, &self.groups.groups, agent).0;
             latest = f64::max(latest, if self.reaches.is_pure(agent) { since } else { f64::INFINITY });
         }
         latest
@@ -170,8 +170,8 @@ impl Engine<'_, '_> {
         let instance = self.guards.atoms[index].instance;
         let [a, b] = self.guards.instances[instance as usize].roots.map(|agent| agent as usize);
         let (agents, groups) = (&self.agents, &self.groups.groups);
-        let (ta, xa) = agents.anchor(a, groups[agents.agents[a].group].clock);
-        let (tb, xb) = agents.anchor(b, groups[agents.agents[b].group].clock);
+        let (ta, xa) = anchor(agents, groups, a);
+        let (tb, xb) = anchor(agents, groups, b);
         let mut distant = None;
         for near in near {
             let Some(ra) = self.reaches.rate(agents, groups, a, near.own, (ta, xa)) else {
