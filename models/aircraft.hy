@@ -15,7 +15,7 @@ fn dist2(a: Aircraft, b: Aircraft) = (a.x - b.x)^2 + (a.y - b.y)^2
 
 // half the rate of dist2 while both cruise: negative if they come nearer
 fn closing(a: Aircraft, b: Aircraft) =
-  (a.x - b.x)*v*(cos(a.phi) - cos(b.phi)) + (a.y - b.y)*v*(sin(a.phi) - sin(b.phi))
+    (a.x - b.x)*v*(cos(a.phi) - cos(b.phi)) + (a.y - b.y)*v*(sin(a.phi) - sin(b.phi))
 
 agent Aircraft(course: real [deg]) {
   state x: real [km] = -far*cos(course),
@@ -28,7 +28,7 @@ agent Aircraft(course: real [deg]) {
   initial mode Cruise {
     flow { phi' = 0 }
     conflict: when exists o in other Aircraft: dist2(self, o) <= alert^2 and closing(self, o) < 0
-              -> Circle { phi := phi - pi/2 }
+        -> Circle { phi := phi - pi/2 }
   }
   mode Circle {
     flow { phi' = omega }
@@ -41,4 +41,9 @@ system {
   second = Aircraft(course = angle)
 }
 
-run { until 10 [min]  tolerance 1e-10  record Aircraft every 1 [s] to "aircraft.csv"  events to "aircraft_events.csv" }
+run {
+  until 10 [min]
+  tolerance 1e-10
+  record Aircraft every 1 [s] to "aircraft.csv"
+  events to "aircraft_events.csv"
+}

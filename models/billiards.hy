@@ -26,7 +26,7 @@ fn dist2(a: Disc, b: Disc) = (a.x - b.x)^2 + (a.y - b.y)^2
 
 // what a's velocity loses along the line of centres
 fn share(a: Disc, b: Disc) =
-  2*b.m/(a.m + b.m)*((a.u - b.u)*(a.x - b.x) + (a.v - b.v)*(a.y - b.y))/dist2(a, b)
+    2*b.m/(a.m + b.m)*((a.u - b.u)*(a.x - b.x) + (a.v - b.v)*(a.y - b.y))/dist2(a, b)
 
 interaction Hit(a: Disc, b: Disc) {
   pair: when dist2(a, b) <= (2*r)^2 {
@@ -37,4 +37,8 @@ interaction Hit(a: Disc, b: Disc) {
 
 system { discs = Disc[n](m = 1 + mod(index, 3)) }
 
-run { until 20 [s]  record Disc, Disc.energy every 0.05 [s] to "billiards.csv"  events to "hits.csv" }
+run {
+  until 20 [s]
+  record Disc, Disc.energy every 0.05 [s] to "billiards.csv"
+  events to "hits.csv"
+}

@@ -16,4 +16,9 @@ agent Ball {
 
 system { ball = Ball() }
 
-run { until 4 [s]  tolerance 1e-10  record ball every 0.01 [s] to "bouncing_ball.csv"  events to "bounces.csv" }
+run {
+  until 4 [s]
+  tolerance 1e-10
+  record ball every 0.01 [s] to "bouncing_ball.csv"
+  events to "bounces.csv"
+}

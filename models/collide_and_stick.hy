@@ -31,4 +31,9 @@ system {
   right = Cart(m = 2, k = 15, rest = 0.2,  x = 1,    partner = left)
 }
 
-run { until 12 [s]  tolerance 1e-10  record Cart every 0.01 [s] to "carts.csv"  events to "contacts.csv" }
+run {
+  until 12 [s]
+  tolerance 1e-10
+  record Cart every 0.01 [s] to "carts.csv"
+  events to "contacts.csv"
+}

@@ -57,7 +57,12 @@ agent Car(v_des: real [m/s], lorry: Lorry) {
 
 system {
   lorry = Lorry(v0 = 20, pause = 8, x = 60)
-  cars  = Car[6](v_des = 30 - index, x = -60*index, lorry = lorry, lead = if index > 0 then cars[index - 1] else none)
+  cars  = Car[6](
+    v_des = 30 - index,
+    x = -60*index,
+    lorry = lorry,
+    lead = if index > 0 then cars[index - 1] else none
+  )
 }
 
 run { until 90 [s]  record cars every 0.5 [s] to "convoy.csv"  events to "convoy_events.csv" }

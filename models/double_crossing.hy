@@ -24,4 +24,9 @@ system {
   short = Ball(over = -1e-6*bar)
 }
 
-run { until 1.9 [s]  tolerance 1e-9  record Ball every 0.01 [s] to "balls.csv"  events to "barrier.csv" }
+run {
+  until 1.9 [s]
+  tolerance 1e-9
+  record Ball every 0.01 [s] to "balls.csv"
+  events to "barrier.csv"
+}

@@ -22,11 +22,11 @@ agent Person(k: int) {
   bottom: when y <= 0    { v := -v }
   top:    when y >= side { v := -v }
 
-  initial mode Healthy { }
+  initial mode Healthy {}
   mode Ill {
     recover: after ill_for -> Immune
   }
-  mode Immune { }
+  mode Immune {}
 }
 
 interaction Meet(a: Person, b: Person) {
@@ -47,4 +47,8 @@ system {
   others = Person[n - seeds](k = seeds + index)
 }
 
-run { until 5 [min]  record Person, office.ill every 0.5 [s] to "epidemic.csv"  events to "epidemic_events.csv" }
+run {
+  until 5 [min]
+  record Person, office.ill every 0.5 [s] to "epidemic.csv"
+  events to "epidemic_events.csv"
+}

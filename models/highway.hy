@@ -2,13 +2,13 @@
 // Shows links, flows that are coupled to the car in front, and groups that form and dissolve as modes change:
 // a jam runs backwards through each lane, and nobody hits anybody.
 
-param lanes: int        = 3
-param len:   real [m]   = 5                  // of a car
-param s0:    real [m]   = 4                  // standstill gap
-param Th:    real [s]   = 1.4                // time headway
+param lanes: int      = 3
+param len:   real [m] = 5                    // of a car
+param s0:    real [m] = 4                    // standstill gap
+param Th:    real [s] = 1.4                  // time headway
 param b_max: real [m/s^2] = 6
-param site:  real [m]   = 1500               // where the first car of a lane stops
-param pause: real [s]   = 6                  // for how long
+param site:  real [m] = 1500                 // where the first car of a lane stops
+param pause: real [s] = 6                    // for how long
 
 agent Car(lane: int, v_des: real [m/s]) {
   state    x: real [m], v: real [m/s]
@@ -32,13 +32,13 @@ agent Car(lane: int, v_des: real [m/s]) {
   }
   mode Follow {                              // reads lead.x, lead.v: coupled to the car in front
     flow { v' = 0.15 [1/s^2]*(gap - s0 - Th*v) - 0.6 [1/s]*dv }
-    panic:  when gap <= s_brake -> Brake
-    free:   when gap >= 1.3*s_follow -> Cruise
+    panic: when gap <= s_brake -> Brake
+    free:  when gap >= 1.3*s_follow -> Cruise
   }
   mode Brake {
     flow { v' = -b_max }
-    ease:   after 1 [s] when lead and gap >= s0 + s_brake and v > 0 -> Follow
-    still:  when v <= 0 -> Stopped { v := 0 }
+    ease:  after 1 [s] when lead and gap >= s0 + s_brake and v > 0 -> Follow
+    still: when v <= 0 -> Stopped { v := 0 }
   }
   mode Stopped {
     flow { v' = 0 }
@@ -51,4 +51,8 @@ system {                                     // rows of the file: front to back,
   cars = Car[](lead = if index >= lanes then cars[index - lanes] else none) from csv("highway.csv")
 }
 
-run { until 90 [s]  record cars every 0.5 [s] to "highway_cars.csv"  events to "highway_events.csv" }
+run {
+  until 90 [s]
+  record cars every 0.5 [s] to "highway_cars.csv"
+  events to "highway_events.csv"
+}

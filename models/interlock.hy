@@ -45,4 +45,8 @@ system {
   pump  = Pump(tank = tank, mains = mains)
 }
 
-run { until 40 [s]  record tank, pump every 0.1 [s] to "interlock.csv"  events to "interlock_events.csv" }
+run {
+  until 40 [s]
+  record tank, pump every 0.1 [s] to "interlock.csv"
+  events to "interlock_events.csv"
+}

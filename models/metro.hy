@@ -21,8 +21,11 @@ agent Train {
       initial mode Gain { flow { v' = a }  top: when v >= v_max -> Roll }
       mode Roll { flow { v' = 0 } }
     }
-    mode Brake { flow { v' = -b }  halt: when v <= 0 -> Halt { v := 0  next_stop := next_stop + distance } }
-    mode Halt  { flow { v' = 0 }  depart: when rising(self is Doors.Closed) -> Run }
+    mode Brake {
+      flow { v' = -b }
+      halt: when v <= 0 -> Halt { v := 0  next_stop := next_stop + distance }
+    }
+    mode Halt { flow { v' = 0 }  depart: when rising(self is Doors.Closed) -> Run }
   }
   region Doors {
     initial mode Closed { flow { open' = 0 }  arrive: when rising(self is Motion.Halt) -> Opening }

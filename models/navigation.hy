@@ -10,10 +10,13 @@ param wind: real [m/s] = 1
 param a:    real [1/s] = -1.2                // A = [a, b; b, a]
 param b:    real [1/s] = 0.1
 
-agent Cell(column: int, row: int, heading: real [deg], kind: int) { }   // heading from north; kind 1: target, 2: forbidden
+agent Cell(column: int, row: int, heading: real [deg], kind: int) {}    // heading from north; kind 1: target, 2: forbidden
 
 fn inside(r: Robot, c: Cell) =
-  r.x >= c.column*side and r.x <= (c.column + 1)*side and r.y >= c.row*side and r.y <= (c.row + 1)*side
+    r.x >= c.column*side
+    and r.x <= (c.column + 1)*side
+    and r.y >= c.row*side
+    and r.y <= (c.row + 1)*side
 
 agent Robot {
   state    x: real [m], y: real [m], u: real [m/s], v: real [m/s]
@@ -39,7 +42,17 @@ agent Robot {
 
 system {
   cells  = Cell[] from csv("navigation_map.csv")
-  robots = Robot[n](x = 0.5 [m], y = (index + 0.5)*3.6 [m]/n, u = 0.3 [m/s]*(mod(index, 3) - 1), v = 0.2 [m/s])
+  robots = Robot[n](
+    x = 0.5 [m],
+    y = (index + 0.5)*3.6 [m]/n,
+    u = 0.3 [m/s]*(mod(index, 3) - 1),
+    v = 0.2 [m/s]
+  )
 }
 
-run { until 8 [s]  tolerance 1e-10  record Robot every 0.05 [s] to "navigation.csv"  events to "cells.csv" }
+run {
+  until 8 [s]
+  tolerance 1e-10
+  record Robot every 0.05 [s] to "navigation.csv"
+  events to "cells.csv"
+}

@@ -41,7 +41,12 @@ agent Car {
 
 system {
   first = Car(x = 0) in Cruise
-  cars  = Car[n](x = -(index + 1)*(s0 + Th*v0), lead = if index == 0 then first else cars[index - 1])
+  cars = Car[n](x = -(index + 1)*(s0 + Th*v0), lead = if index == 0 then first else cars[index - 1])
 }
 
-run { until 90 [s]  tolerance 1e-9  record Car every 0.1 [s] to "platoon.csv"  events to "platoon_events.csv" }
+run {
+  until 90 [s]
+  tolerance 1e-9
+  record Car every 0.1 [s] to "platoon.csv"
+  events to "platoon_events.csv"
+}

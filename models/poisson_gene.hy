@@ -14,7 +14,7 @@ agent Cell {
   discrete m: int = 0
   state p = 0
   flow { p' = k_p*m - d_p*p }
-  read: rate k_m             { m := m + 1 }
+  read: rate k_m { m := m + 1 }
   lose: rate d_m*m when m > 0 { m := m - 1 }
 }
 

@@ -34,4 +34,9 @@ agent Bridge {
 
 system { bridge = Bridge() }
 
-run { until 100 [ms]  tolerance 1e-10  record bridge.v, bridge.e every 0.1 [ms] to "rectifier.csv"  events to "diodes.csv" }
+run {
+  until 100 [ms]
+  tolerance 1e-10
+  record bridge.v, bridge.e every 0.1 [ms] to "rectifier.csv"
+  events to "diodes.csv"
+}

@@ -19,4 +19,9 @@ agent Relay {
 
 system { clock = Relay() }
 
-run { until 10000 [s]  tolerance 1e-12  record clock every 10 [s] to "relay_clock.csv"  events to "ticks.csv" }
+run {
+  until 10000 [s]
+  tolerance 1e-12
+  record clock every 10 [s] to "relay_clock.csv"
+  events to "ticks.csv"
+}

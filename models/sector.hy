@@ -21,7 +21,9 @@ agent Aircraft(way: int, cruise: real [m/s]) {
     close: when distance <= near -> Follow
   }
   mode Follow {                              // at 12 km as fast as the one ahead
-    flow { v' = if ahead then 0.01 [1/s]*(ahead.v - v) + 4e-5 [1/s^2]*(distance - 12 [km]) else 0 [m/s^2] }
+    flow {
+      v' = if ahead then 0.01 [1/s]*(ahead.v - v) + 4e-5 [1/s^2]*(distance - 12 [km]) else 0 [m/s^2]
+    }
     free: when not ahead or distance >= 1.2*near -> Cruise
   }
 }
@@ -45,4 +47,5 @@ system {
 }
 
 run { until 1 [h]  seed 3  tolerance 1e-9
-      record Aircraft.s, Aircraft.v, Aircraft.ahead every 10 [s] to "sector.csv"  events to "sector_events.csv" }
+      record Aircraft.s, Aircraft.v, Aircraft.ahead every 10 [s] to "sector.csv"
+      events to "sector_events.csv" }

@@ -37,4 +37,9 @@ system {
   free   = Block(belt = 0, x = 0.23)         // on the floor: loses 2 Fk/k of its amplitude in every half swing
 }
 
-run { until 5 [s]  tolerance 1e-10  record Block every 0.005 [s] to "stick_slip.csv"  events to "stick_slip_events.csv" }
+run {
+  until 5 [s]
+  tolerance 1e-10
+  record Block every 0.005 [s] to "stick_slip.csv"
+  events to "stick_slip_events.csv"
+}

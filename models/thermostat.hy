@@ -22,4 +22,9 @@ agent Room {
 
 system { room = Room() }
 
-run { until 3  tolerance 1e-10  record room every 0.01 to "thermostat.csv"  events to "switches.csv" }
+run {
+  until 3
+  tolerance 1e-10
+  record room every 0.01 to "thermostat.csv"
+  events to "switches.csv"
+}

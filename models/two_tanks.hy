@@ -27,4 +27,9 @@ agent Tanks {
 
 system { tanks = Tanks() }
 
-run { until 6  tolerance 1e-8  record tanks every 0.01 to "two_tanks.csv"  events to "two_tanks_events.csv" }
+run {
+  until 6
+  tolerance 1e-8
+  record tanks every 0.01 to "two_tanks.csv"
+  events to "two_tanks_events.csv"
+}

@@ -8,10 +8,10 @@ agent Oscillator {
   discrete jumps: int = 0
   flow { x' = y
          y' = mu*(1 - x^2)*y - x }
-  near:  when x <= 1.5 { }                   // most of the way is over
+  near:  when x <= 1.5 {}                    // most of the way is over
   falls: when x <= 0 { jumps := jumps + 1 }
   rises: when rising(x >= 1) { jumps := jumps + 1 }
-  flash: when y >= 100 { }                   // for a millisecond of a jump
+  flash: when y >= 100 {}                    // for a millisecond of a jump
 }
 
 system { oscillator = Oscillator() }

@@ -40,7 +40,7 @@ pub(super) enum Command {
     Completions(CompletionsArguments),
     /// Print the manual page, for `man -l -`
     Man(ManArguments),
-    /// Lay a model out in the canonical form (not built yet)
+    /// Lay models out: blanks, indentation, line ends; never a word or a comment
     Fmt(FmtArguments),
 }
 
@@ -315,9 +315,12 @@ pub(super) struct ManArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct FmtArguments {
-    /// Taken and refused, so that the message can name the command
-    #[arg(value_name = "MODEL.hy", trailing_var_arg = true, allow_hyphen_values = true)]
-    pub(super) rest: Vec<String>,
+    /// The models; `-`, or none: from standard input to standard output
+    #[arg(value_name = "MODEL.hy")]
+    pub(super) models: Vec<PathBuf>,
+    /// Write nothing; list what would change, and exit with 1 if anything would
+    #[arg(long)]
+    pub(super) check: bool,
 }
 
 /// All algorithms, as `--algorithms` has them.

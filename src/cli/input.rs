@@ -28,11 +28,20 @@ pub(super) struct Parsed {
     pub(super) tree: Result<Ast, Vec<Diagnostic>>,
 }
 
+/// The text of a model; `-` is standard input. Refused if it cannot be read or is not UTF-8.
+pub(super) fn read_text(path: &Path) -> Result<String, Refused> {
+    let bytes = match path.to_str() {
+        Some("-") => read_all(io::stdin().lock(), MODEL_BYTES_MAX),
+        _ => read_bytes(path, MODEL_BYTES_MAX),
+    };
+    bytes
+        .and_then(|bytes| String::from_utf8(bytes).map_err(|_| io::ErrorKind::InvalidData.into()))
+        .map_err(|error| format!("cannot read `{}`: {}", path.display(), reason(&error)))
+}
+
 /// Reads and parses. Refused if the file cannot be read or is not UTF-8.
 pub(super) fn parse(path: &Path) -> Result<Parsed, Refused> {
-    let text = read_bytes(path, MODEL_BYTES_MAX)
-        .and_then(|bytes| String::from_utf8(bytes).map_err(|_| io::ErrorKind::InvalidData.into()))
-        .map_err(|error| format!("cannot read `{}`: {}", path.display(), reason(&error)))?;
+    let text = read_text(path)?;
     let mut sources = SourceMap::default();
     let file = sources.add(name_of(path), text.as_str());
     let tree = syntax::parse(file, &text);
@@ -84,8 +93,12 @@ pub(super) fn settings_with(
 
 /// A file, if it is not larger than so many bytes; one without end is refused, not read.
 fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    read_all(fs::File::open(path)?, most)
+}
+
+fn read_all(from: impl io::Read, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    fs::File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    from.take(most + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most {
         return Err(io::Error::other(format!("it is larger than {} MiB", most >> 20)));
     }

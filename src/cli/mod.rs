@@ -24,6 +24,7 @@ mod plot;
 mod check;
 mod show;
 mod new;
+mod fmt;
 mod shell;
 
 use std::ffi::OsString;
@@ -78,7 +79,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>) -> Exit {
         Command::New(arguments) => new::new(&arguments),
         Command::Completions(arguments) => shell::completions(&arguments),
         Command::Man(arguments) => shell::man(&arguments),
-        Command::Fmt(_) => Err(refusal::FORMATTER.into()),
+        Command::Fmt(arguments) => fmt::fmt(&arguments),
     };
     done.unwrap_or_else(|refused| {
         terminal::complain(&refused);

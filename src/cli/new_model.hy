@@ -2,10 +2,10 @@
 // Made by `hyc new`: change what you like, and run it with `hyc run NAME.hy`.
 
 // Parameters can be given another value when the model is run: hyc run NAME.hy -p n=20
-param n:     int        = 6                  // how many robots
-param side:  real [m]   = 10                 // of the room
-param near:  real [m]   = 1                  // two robots meet when they are so near to each other
-param pause: real [s]   = 2                  // how long they rest then
+param n:     int      = 6                    // how many robots
+param side:  real [m] = 10                   // of the room
+param near:  real [m] = 1                    // two robots meet when they are so near to each other
+param pause: real [s] = 2                    // how long they rest then
 
 // Each robot is an agent of this type. What stands in brackets is given to it in `system`.
 agent Robot(speed: real [m/s]) {

@@ -7,9 +7,6 @@ use crate::model::Model;
 use crate::model::ir::Action;
 use crate::runtime::{Algorithm, published_take};
 
-/// What `hyc fmt` says.
-pub(super) const FORMATTER: &str = "`hyc fmt` is not built yet: the printer does not keep comments so far";
-
 /// Refuses what the engine cannot do yet.
 pub(super) fn refuse_engine(arguments: &EngineArguments) -> Result<(), Refused> {
     match arguments.integrator {

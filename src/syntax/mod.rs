@@ -67,9 +67,21 @@ fn read(file: FileId, text: &str) -> Result<Ast, Vec<SyntaxError>> {
     })
 }
 
-/// The tree as a text in the canonical layout; parsing it gives the same tree, at other places.
-pub fn print(ast: &Ast) -> String {
-    on_large_stack(|| print::print(ast))
+/// The text in the canonical layout: the same words and comments, and so the same tree, at other places.
+pub fn format(file: FileId, text: &str) -> Result<String, Vec<Diagnostic>> {
+    let ast = parse(file, text)?;
+    let tokens = scan::scan(file, text).map_err(|error| vec![error.diagnostic()])?;
+    Ok(on_large_stack(|| print::print(Source { file, text, tokens: &tokens }, &ast)))
+}
+
+/// Whether two texts of the language have the same tree, at other places, and the same comments.
+pub fn same(text: &str, other: &str) -> bool {
+    let meaning = |text: &str| {
+        let (ast, tokens) = (parse(FileId(0), text).ok()?, scan::scan(FileId(0), text).ok()?);
+        let comments: Vec<String> = print::comments(text, &tokens);
+        Some((dump(&ast), comments))
+    };
+    meaning(text).is_some_and(|this| meaning(other) == Some(this))
 }
 
 /// The tree as an indented outline without places, for `hyc show --stage ast`.

@@ -6,7 +6,7 @@
 //! `HYC_MUTANTS=20000 cargo test --test it robust:: -- --nocapture` tries so many, from number `HYC_FIRST` (0) on. A mutant
 //! that takes the process with it is left in `target/tmp/mutant-N.hy`; `HYC_MUTANTS=1 HYC_FIRST=n` is mutant n alone.
 
-mod mutate;
+pub mod mutate;
 mod survive;
 
 use std::collections::BTreeMap;

@@ -5,6 +5,8 @@ use hyc::base::{FileId, SourceMap};
 use hyc::syntax;
 use hyc::syntax::ast::{ExprKind, Item};
 
+use crate::formatting::assert_round_trip;
+
 /// The three programs of the language reference.
 const PROGRAMS: [(&str, &str); 3] = [
     ("two_cars", include_str!("syntax/two_cars.hy")),
@@ -42,15 +44,6 @@ fn what_the_printer_writes_is_read_as_the_same_tree() {
     }
 }
 
-/// Parsing what is printed gives the same tree, and printing that the same text.
-fn assert_round_trip(text: &str) {
-    let ast = syntax::parse(FileId(0), text).unwrap_or_else(|errors| panic!("{text}\n{errors:?}"));
-    let printed = syntax::print(&ast);
-    let again = syntax::parse(FileId(0), &printed).unwrap_or_else(|errors| panic!("{printed}\n{errors:?}"));
-    assert_eq!(syntax::dump(&ast), syntax::dump(&again), "{printed}");
-    assert_eq!(printed, syntax::print(&again));
-}
-
 /// Statements that the three programs do not have.
 const OTHER_STATEMENTS: &str = r#"
 import "cars.hy"
@@ -83,7 +76,7 @@ run { stop when count o in A == 0 record as every 1 [s] to "x.csv" events to "e.
 fn every_other_statement_is_read_and_printed() {
     insta::with_settings!({ snapshot_path => "syntax", prepend_module_to_snapshot => false }, {
         let ast = syntax::parse(FileId(0), OTHER_STATEMENTS).unwrap_or_else(|_| panic!("{}", refuse(OTHER_STATEMENTS)));
-        insta::assert_snapshot!("other_statements_printed", syntax::print(&ast));
+        insta::assert_snapshot!("other_statements_printed", syntax::format(FileId(0), OTHER_STATEMENTS).unwrap());
         insta::assert_snapshot!("other_statements", syntax::dump(&ast));
     });
     assert_round_trip(OTHER_STATEMENTS);

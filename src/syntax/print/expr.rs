@@ -1,182 +1,112 @@
-//! Expressions in the canonical layout: which parentheses the tree needs.
-//!
-//! Each kind of expression has a level of binding; an operand of a lower level than its place asks for stands in
-//! parentheses. An `if` or a quantifier extends as far right as it can, so it needs them wherever something follows.
+//! Where the lines of an expression may end: before its weakest operators first.
 
-use std::ops::Fn;
-
-use super::Printer;
+use super::writer::Writer;
 use crate::syntax::ast::*;
 
-/// How tightly an expression binds, from the loosest.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Binding {
-    Open,
-    Or,
-    And,
-    Not,
-    Comparison,
-    Sum,
-    Product,
-    Negation,
-    Power,
-    Postfix,
-}
-
-/// What stands behind an expression.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Follow {
-    /// Nothing that an `if` or a quantifier could take for its own.
-    End,
-    /// An operator, a suffix, or a quantifier's `:`.
-    More,
-}
-
-fn binding(expr: &Expr) -> Binding {
-    match &expr.kind {
-        ExprKind::If { .. } | ExprKind::Quantifier(_) => Binding::Open,
-        ExprKind::Or(_) => Binding::Or,
-        ExprKind::And(_) => Binding::And,
-        ExprKind::Unary(UnaryOp::Not, _) => Binding::Not,
-        ExprKind::Compare(..) | ExprKind::Is(..) => Binding::Comparison,
-        ExprKind::Sum(_) => Binding::Sum,
-        ExprKind::Product(_) => Binding::Product,
-        ExprKind::Unary(UnaryOp::Neg, _) => Binding::Negation,
-        ExprKind::Power(..) => Binding::Power,
-        ExprKind::Number { .. } | ExprKind::Text(_) | ExprKind::Name(_) | ExprKind::List(_) => {
-            Binding::Postfix
-        }
-        ExprKind::Field(..) | ExprKind::Call { .. } | ExprKind::Index(..) | ExprKind::Prime(_) => {
-            Binding::Postfix
-        }
-    }
-}
-
-impl Printer {
+impl Writer<'_> {
+    /// Writes the words up to the end of an expression. Parentheses around it are its surroundings' to write.
     pub(super) fn expr(&mut self, expr: &Expr) {
-        self.followed(expr, Follow::End);
-    }
-
-    fn followed(&mut self, expr: &Expr, follow: Follow) {
         match &expr.kind {
-            ExprKind::Number { text, unit, value: _ } => {
-                self.put(text);
-                self.unit(unit.as_deref());
-            }
-            ExprKind::Text(text) => self.quoted(text),
-            ExprKind::Name(name) => self.put(name),
-            ExprKind::List(items) => self.enclosed("[", items, "]"),
-            ExprKind::Field(base, field) => {
-                self.operand(base, Binding::Postfix, Follow::More);
-                self.put(".");
-                self.put(&field.text);
-            }
+            ExprKind::Number { unit, .. } => unit.iter().for_each(|unit| self.unit(unit.span)),
+            ExprKind::Text(_) | ExprKind::Name(_) => {}
+            ExprKind::List(items) => self.exprs(items),
+            ExprKind::Field(base, _) | ExprKind::Prime(base) | ExprKind::Is(base, _) => self.whole(base),
             ExprKind::Call { callee, args } => {
-                self.operand(callee, Binding::Postfix, Follow::More);
-                self.enclosed("(", args, ")");
+                self.whole(callee);
+                self.close_parens();
+                self.exprs(args);
             }
             ExprKind::Index(base, index) => {
-                self.operand(base, Binding::Postfix, Follow::More);
-                self.enclosed("[", std::slice::from_ref(index), "]");
+                self.whole(base);
+                self.close_parens();
+                self.exprs(std::slice::from_ref(index));
             }
-            ExprKind::Prime(base) => {
-                self.operand(base, Binding::Postfix, Follow::More);
-                self.put("'");
-            }
-            ExprKind::Unary(UnaryOp::Neg, operand) => {
-                self.put("-");
-                self.operand(operand, Binding::Negation, follow);
-            }
-            ExprKind::Unary(UnaryOp::Not, operand) => {
-                self.put("not ");
-                self.operand(operand, Binding::Not, follow);
-            }
+            ExprKind::Unary(_, operand) => self.whole(operand),
             ExprKind::Power(base, exponent) => {
-                self.operand(base, Binding::Postfix, Follow::More);
-                self.put("^");
-                self.operand(exponent, Binding::Negation, follow);
+                self.whole(base);
+                self.whole(exponent);
             }
-            ExprKind::Sum(chain) => {
-                self.chain(chain, Binding::Product, follow, |op| format!(" {} ", op.sign()))
-            }
-            ExprKind::Product(chain) => {
-                self.chain(chain, Binding::Negation, follow, |op| op.sign().to_string())
-            }
-            ExprKind::Compare(op, left, right) => {
-                self.operand(left, Binding::Sum, Follow::More);
-                self.put(&format!(" {} ", op.sign()));
-                self.operand(right, Binding::Sum, follow);
-            }
-            ExprKind::Is(agent, mode) => {
-                self.operand(agent, Binding::Sum, Follow::More);
-                self.put(" is ");
-                self.target(mode);
-            }
-            ExprKind::And(terms) => self.terms(terms, " and ", Binding::Not, follow),
-            ExprKind::Or(terms) => self.terms(terms, " or ", Binding::And, follow),
-            ExprKind::If { condition, then, otherwise } => {
-                self.put("if ");
-                self.expr(condition);
-                self.put(" then ");
-                self.expr(then);
-                self.put(" else ");
-                self.expr(otherwise);
-            }
+            ExprKind::Sum(chain) => self.chain(chain),
+            ExprKind::Product(chain) => self.chain(chain),
+            ExprKind::Compare(_, left, right) => self.operands(true, [&**left, &**right]),
+            ExprKind::And(terms) | ExprKind::Or(terms) => self.operands(false, terms),
+            ExprKind::If { .. } => self.conditional(expr),
             ExprKind::Quantifier(quantifier) => self.quantifier(quantifier),
         }
+        self.up_to(expr.span.end);
     }
 
-    /// An operand where something that binds at least like `place` may stand.
-    fn operand(&mut self, expr: &Expr, place: Binding, follow: Follow) {
-        let binds = binding(expr);
-        if binds >= place || (binds == Binding::Open && follow == Follow::End) {
-            self.followed(expr, follow);
-        } else {
-            self.put("(");
-            self.expr(expr);
-            self.put(")");
+    /// Brackets with expressions in them.
+    pub(super) fn exprs(&mut self, exprs: &[Expr]) {
+        self.brackets(exprs, |w, expr| w.whole(expr));
+    }
+
+    /// An expression with the parentheses before it.
+    pub(super) fn whole(&mut self, expr: &Expr) {
+        self.up_to(expr.span.start);
+        self.expr(expr);
+    }
+
+    fn chain<Op>(&mut self, chain: &Chain<Op>) {
+        let rest = chain.rest.iter().map(|link| &link.operand);
+        self.operands(true, std::iter::once(&*chain.first).chain(rest));
+    }
+
+    /// Operands with breaks before the operators between them.
+    fn operands<'e>(&mut self, fill: bool, operands: impl IntoIterator<Item = &'e Expr>) {
+        self.open(fill);
+        for (k, operand) in operands.into_iter().enumerate() {
+            if k > 0 {
+                self.close_parens();
+                self.may_continue();
+            }
+            self.deeper(|w| w.whole(operand));
         }
+        self.close();
     }
 
-    fn enclosed(&mut self, open: &str, exprs: &[Expr], close: &str) {
-        self.put(open);
-        self.list(exprs, |p, expr| p.expr(expr));
-        self.put(close);
-    }
-
-    fn chain<Op: Copy>(
-        &mut self,
-        chain: &Chain<Op>,
-        place: Binding,
-        follow: Follow,
-        sign: impl Fn(Op) -> String,
-    ) {
-        self.operand(&chain.first, place, Follow::More);
-        for (k, link) in chain.rest.iter().enumerate() {
-            self.put(&sign(link.op));
-            self.operand(&link.operand, place, if k + 1 < chain.rest.len() { Follow::More } else { follow });
+    /// `if` ... `then` ... `else if` ... `else` ..., with breaks before `else`, and if need be before `then`.
+    fn conditional(&mut self, mut expr: &Expr) {
+        self.open(false);
+        while let ExprKind::If { condition, then, otherwise } = &expr.kind {
+            self.open(true);
+            self.deeper(|w| {
+                w.whole(condition);
+                w.close_parens();
+                w.may_continue();
+                w.whole(then);
+                w.close_parens();
+            });
+            self.close();
+            self.may_continue();
+            self.word();
+            expr = otherwise;
+            // In parentheses a conditional is an operand like any other.
+            if self.peek() == "(" {
+                break;
+            }
         }
-    }
-
-    fn terms(&mut self, terms: &[Expr], word: &str, place: Binding, follow: Follow) {
-        for (k, term) in terms.iter().enumerate() {
-            self.put(if k > 0 { word } else { "" });
-            self.operand(term, place, if k + 1 < terms.len() { Follow::More } else { follow });
-        }
+        self.deeper(|w| w.whole(expr));
+        self.close();
     }
 
     fn quantifier(&mut self, quantifier: &Quantifier) {
-        let Quantifier { kind, binder, other, set, filter, body } = quantifier;
-        let other = if other.is_some() { "other " } else { "" };
-        self.put(&format!("{} {} in {other}{}", kind.word(), binder.text, set.text));
-        if let Some(filter) = filter {
-            self.put(" where ");
-            let follow = if body.is_some() { Follow::More } else { Follow::End };
-            self.operand(filter, Binding::Or, follow);
-        }
-        if let Some(body) = body {
-            self.put(if *kind == QuantifierKind::Nearest { " by " } else { ": " });
-            self.expr(body);
-        }
+        self.open(true);
+        self.up_to(quantifier.set.span.end);
+        self.deeper(|w| {
+            if let Some(filter) = &quantifier.filter {
+                w.may_continue();
+                w.whole(filter);
+                w.close_parens();
+            }
+            if let Some(body) = &quantifier.body {
+                if w.peek() == ":" {
+                    w.word();
+                }
+                w.may_continue();
+                w.whole(body);
+            }
+        });
+        self.close();
     }
 }

@@ -1,375 +1,358 @@
-//! Items, statements and actions in the canonical layout.
+//! Where the lines of items, statements and actions may end.
 
-use super::Printer;
+use super::writer::{Braces, Writer};
+use crate::base::Span;
 use crate::syntax::ast::*;
 
-impl Printer {
+/// The place of an item.
+pub fn item_span(item: &Item) -> Span {
+    match item {
+        Item::Import(item) => item.span,
+        Item::Param(item) => item.span,
+        Item::Let(item) => item.span,
+        Item::Fn(item) => item.span,
+        Item::Agent(item) => item.span,
+        Item::Interaction(item) => item.span,
+        Item::System(item) => item.span,
+        Item::Property(item) => item.span,
+        Item::Run(item) => item.span,
+    }
+}
+
+fn agent_item_span(item: &AgentItem) -> Span {
+    match item {
+        AgentItem::Variables(item) => item.span,
+        AgentItem::Link(item) => item.span,
+        AgentItem::Event(item) => item.span,
+        AgentItem::Region(item) => item.span,
+        AgentItem::Body(item) => body_item_span(item),
+    }
+}
+
+fn body_item_span(item: &BodyItem) -> Span {
+    match item {
+        BodyItem::Let(item) => item.span,
+        BodyItem::Flow(item) => item.span,
+        BodyItem::Invariant(item) | BodyItem::Assert(item) => item.span,
+        BodyItem::Mode(item) => item.span,
+        BodyItem::Entry(item) | BodyItem::Exit(item) => item.span,
+        BodyItem::Transition(item) => item.span,
+    }
+}
+
+fn interaction_item_span(item: &InteractionItem) -> Span {
+    match item {
+        InteractionItem::Let(item) => item.span,
+        InteractionItem::Transition(item) => item.span,
+    }
+}
+
+impl Writer<'_> {
     pub(super) fn item(&mut self, item: &Item) {
-        self.line(|p| match item {
-            Item::Import(import) => {
-                p.put("import ");
-                p.quoted(&import.path.value);
-            }
-            Item::Param(param) => p.binding("param ", &param.name, &param.ty, &param.value),
-            Item::Let(definition) => p.definition(definition),
+        match item {
+            Item::Import(import) => self.up_to(import.span.end),
+            Item::Param(param) => self.binding(&param.ty, &param.value),
+            Item::Let(definition) => self.binding(&definition.ty, &definition.value),
             Item::Fn(function) => {
-                p.put("fn ");
-                p.put(&function.name.text);
-                p.formals(&function.formals);
-                p.annotation(&function.ty);
-                p.put(" = ");
-                p.expr(&function.body);
+                self.up_to(function.name.span.end);
+                self.formals(&function.formals);
+                self.binding(&function.ty, &function.body);
             }
             Item::Agent(agent) => {
-                p.head("agent ", &agent.name);
-                if !agent.formals.is_empty() {
-                    p.formals(&agent.formals);
-                }
-                p.put(" ");
-                p.block(&agent.items, |p, item| p.line(|p| p.agent_item(item)));
+                self.up_to(agent.name.span.end);
+                self.formals(&agent.formals);
+                self.braces(Braces::Block, &agent.items, agent_item_span, |w, item| w.agent_item(item));
             }
             Item::Interaction(interaction) => {
-                p.head("interaction ", &interaction.name);
-                p.formals(&interaction.formals);
-                p.put(" ");
-                p.block(&interaction.items, |p, item| p.line(|p| p.interaction_item(item)));
+                self.up_to(interaction.name.span.end);
+                self.formals(&interaction.formals);
+                self.braces(Braces::Block, &interaction.items, interaction_item_span, |w, item| match item {
+                    InteractionItem::Let(definition) => w.binding(&definition.ty, &definition.value),
+                    InteractionItem::Transition(transition) => w.transition(transition),
+                });
             }
             Item::System(system) => {
-                p.put("system ");
-                p.block(&system.instances, |p, instance| p.line(|p| p.instance(instance)));
+                self.word();
+                self.braces(
+                    Braces::Hanging,
+                    &system.instances,
+                    |item| item.span,
+                    |w, item| {
+                        w.constructor(&item.constructor);
+                    },
+                );
             }
             Item::Property(property) => {
-                p.head("property ", &property.name);
-                p.put(" = ");
-                p.formula(&property.formula);
+                self.up_to(property.formula.span.start);
+                self.formula(&property.formula);
             }
             Item::Run(run) => {
-                p.put("run ");
-                p.block(&run.settings, |p, setting| p.line(|p| p.setting(setting)));
+                self.word();
+                self.braces(Braces::Hanging, &run.settings, |item| item.span, |w, item| w.setting(item));
             }
-        });
+        }
     }
 
-    fn head(&mut self, word: &str, name: &Name) {
-        self.put(word);
-        self.put(&name.text);
-    }
-
-    fn binding(&mut self, word: &str, name: &Name, ty: &Option<TypeName>, value: &Expr) {
-        self.head(word, name);
+    /// A type, `=` and a value.
+    fn binding(&mut self, ty: &Option<TypeName>, value: &Expr) {
         self.annotation(ty);
-        self.put(" = ");
-        self.expr(value);
+        self.value(value);
     }
 
-    fn definition(&mut self, definition: &Let) {
-        self.binding("let ", &definition.name, &definition.ty, &definition.value);
+    fn annotation(&mut self, ty: &Option<TypeName>) {
+        if let Some(unit) = ty.as_ref().and_then(|ty| ty.unit.as_ref()) {
+            self.unit(unit.span);
+        }
+    }
+
+    /// The words up to `=` or another sign, and a value, which may begin a line.
+    fn value(&mut self, value: &Expr) {
+        while !matches!(self.peek(), "=" | ":=" | "~") {
+            self.word();
+        }
+        self.word();
+        let of_lines = matches!(value.kind, ExprKind::And(_) | ExprKind::Or(_) | ExprKind::If { .. });
+        self.open(true);
+        self.may_continue_with_value(of_lines);
+        self.whole(value);
+        self.close();
+    }
+
+    /// An expression, if there is one, before which a line may end.
+    fn clause(&mut self, expr: &Option<Expr>) {
+        if let Some(expr) = expr {
+            self.close_parens();
+            self.may_continue();
+            self.whole(expr);
+        }
     }
 
     fn formals(&mut self, formals: &[Formal]) {
-        self.put("(");
-        self.list(formals, |p, formal| {
-            p.put(&formal.name.text);
-            p.put(": ");
-            p.type_name(&formal.ty);
-            p.clause("=", &formal.default);
+        if self.peek() != "(" {
+            return;
+        }
+        self.brackets(formals, |w, formal| {
+            if let Some(unit) = &formal.ty.unit {
+                w.unit(unit.span);
+            }
+            formal.default.iter().for_each(|default| w.whole(default));
+            w.up_to(formal.span.end);
         });
-        self.put(")");
     }
 
     fn agent_item(&mut self, item: &AgentItem) {
         match item {
             AgentItem::Variables(variables) => {
-                self.put(match variables.kind {
-                    VariableKind::State => "state ",
-                    VariableKind::Discrete => "discrete ",
-                });
-                self.list(&variables.variables, |p, variable| {
-                    p.put(&variable.name.text);
-                    p.annotation(&variable.ty);
-                    variable.initial.iter().for_each(|given| p.given(" = ", given));
-                });
+                self.word();
+                self.aligned(|w| w.variables(&variables.variables));
             }
-            AgentItem::Link(link) => {
-                self.head("link ", &link.name);
-                if let Some(target) = &link.target {
-                    self.head(": ", target);
-                }
-                self.clause("=", &link.value);
-            }
+            AgentItem::Link(link) => link.value.iter().for_each(|value| self.value(value)),
             AgentItem::Event(event) => {
-                self.head("event ", &event.name);
-                if !event.formals.is_empty() {
-                    self.formals(&event.formals);
-                }
+                self.up_to(event.name.span.end);
+                self.formals(&event.formals);
             }
             AgentItem::Region(region) => {
-                self.head("region ", &region.name);
-                self.put(" ");
+                self.up_to(region.name.span.end);
                 self.body(&region.items);
             }
             AgentItem::Body(item) => self.body_item(item),
         }
     }
 
+    fn variables(&mut self, variables: &[Variable]) {
+        self.open(true);
+        for (k, variable) in variables.iter().enumerate() {
+            if k > 0 {
+                self.comma();
+                self.may_begin_item();
+            }
+            self.annotation(&variable.ty);
+            variable.initial.iter().for_each(|given| self.whole(&given.value));
+            self.up_to(variable.span.end);
+        }
+        self.close();
+    }
+
     fn body(&mut self, items: &[BodyItem]) {
-        self.block(items, |p, item| p.line(|p| p.body_item(item)));
+        self.braces(Braces::Block, items, body_item_span, |w, item| w.body_item(item));
     }
 
     fn body_item(&mut self, item: &BodyItem) {
         match item {
-            BodyItem::Let(definition) => self.definition(definition),
-            BodyItem::Flow(flow) => self.flow(flow),
-            BodyItem::Invariant(claim) => self.claim("invariant ", claim),
-            BodyItem::Assert(claim) => self.claim("assert ", claim),
+            BodyItem::Let(definition) => self.binding(&definition.ty, &definition.value),
+            BodyItem::Flow(flow) => {
+                self.word();
+                self.braces(
+                    Braces::Hanging,
+                    &flow.equations,
+                    |item| item.span,
+                    |w, item| w.value(&item.rate),
+                );
+            }
+            BodyItem::Invariant(claim) | BodyItem::Assert(claim) => {
+                self.open(true);
+                self.whole(&claim.condition);
+                if claim.message.is_some() {
+                    self.close_parens();
+                    self.may_continue();
+                }
+                self.up_to(claim.span.end);
+                self.close();
+            }
             BodyItem::Mode(mode) => {
-                self.put(if mode.initial.is_some() { "initial " } else { "" });
-                self.head("mode ", &mode.name);
-                self.put(" ");
+                self.up_to(mode.name.span.end);
                 self.body(&mode.items);
             }
-            BodyItem::Entry(actions) => {
-                self.put("entry ");
-                self.actions(actions);
-            }
-            BodyItem::Exit(actions) => {
-                self.put("exit ");
+            BodyItem::Entry(actions) | BodyItem::Exit(actions) => {
+                self.word();
                 self.actions(actions);
             }
             BodyItem::Transition(transition) => self.transition(transition),
         }
     }
 
-    fn flow(&mut self, flow: &Flow) {
-        self.put("flow ");
-        let equation = |p: &mut Self, equation: &FlowEquation| {
-            p.put(&equation.state.text);
-            p.put("' = ");
-            p.expr(&equation.rate);
-        };
-        match flow.equations.as_slice() {
-            [single] => {
-                self.put("{ ");
-                equation(self, single);
-                self.put(" }");
-            }
-            equations => self.block(equations, |p, each| p.line(|p| equation(p, each))),
-        }
-    }
-
-    fn claim(&mut self, word: &str, claim: &Claim) {
-        self.put(word);
-        self.expr(&claim.condition);
-        self.message(&claim.message);
-    }
-
     fn transition(&mut self, transition: &Transition) {
-        if let Some(label) = &transition.label {
-            self.put(&label.text);
-            self.put(": ");
-        }
+        self.open(true);
+        self.up_to(transition.trigger.span.start);
         self.trigger(&transition.trigger);
-        self.clause("priority", &transition.priority);
+        self.clause(&transition.priority);
         if let Some(target) = &transition.target {
-            self.put(" -> ");
-            self.target(target);
+            self.close_parens();
+            self.may_continue();
+            self.up_to(target.span.end);
         }
+        self.close_parens();
+        self.close();
         if let Some(actions) = &transition.actions {
-            self.put(" ");
             self.actions(actions);
         }
     }
 
     fn trigger(&mut self, trigger: &Trigger) {
-        let start = self.text.len();
         match &trigger.kind {
-            TriggerKind::When => {}
-            TriggerKind::After(delay) => self.word_and("after ", delay),
-            TriggerKind::Every(period) => self.word_and("every ", period),
-            TriggerKind::Rate(hazard) => self.word_and("rate ", hazard),
-            TriggerKind::On { event, binders, sender } => {
-                self.head("on ", event);
-                if !binders.is_empty() {
-                    self.put("(");
-                    self.list(binders, |p, binder| p.put(&binder.text));
-                    self.put(")");
+            TriggerKind::When => {
+                if let Some(guard) = &trigger.guard {
+                    self.whole(guard);
                 }
-                self.clause("from", sender);
+                return;
+            }
+            TriggerKind::After(time) | TriggerKind::Every(time) | TriggerKind::Rate(time) => self.whole(time),
+            TriggerKind::On { event, binders, sender } => {
+                self.up_to(binders.last().map_or(event.span, |binder| binder.span).end);
+                self.clause(sender);
             }
         }
-        if let Some(guard) = &trigger.guard {
-            self.word_and(if self.text.len() > start { " when " } else { "when " }, guard);
-        }
-    }
-
-    fn word_and(&mut self, word: &str, expr: &Expr) {
-        self.put(word);
-        self.expr(expr);
+        self.clause(&trigger.guard);
     }
 
     fn actions(&mut self, actions: &Actions) {
-        match actions.actions.as_slice() {
-            [Action { kind: ActionKind::If { .. }, .. }] => self.lines(actions),
-            [single] => {
-                self.put("{ ");
-                self.action(single);
-                self.put(" }");
-            }
-            several => self.block(several, |p, each| p.line(|p| p.action(each))),
-        }
+        self.braces(Braces::Hanging, &actions.actions, |item| item.span, |w, item| w.action(item));
     }
 
     fn action(&mut self, action: &Action) {
         match &action.kind {
-            ActionKind::Assign { place, given } => {
-                self.place(place);
-                self.given(" := ", given);
-            }
-            ActionKind::Create(constructor) => {
-                self.put("create ");
-                self.constructor(constructor);
-            }
-            ActionKind::Destroy(agent) => self.word_and("destroy ", agent),
+            ActionKind::Assign { given, .. } => self.value(&given.value),
+            ActionKind::Create(constructor) => self.constructor(constructor),
+            ActionKind::Destroy(agent) => self.whole(agent),
             ActionKind::Emit { event, args, delay } => {
-                self.put("emit ");
-                self.place(event);
-                if !args.is_empty() {
-                    self.put("(");
-                    self.list(args, |p, arg| p.expr(arg));
-                    self.put(")");
+                self.up_to(event.span.end);
+                if self.peek() == "(" {
+                    self.exprs(args);
                 }
-                self.clause("after", delay);
+                self.clause(delay);
             }
-            ActionKind::ChangeMode { participant, target } => {
-                self.put(&participant.text);
-                self.put(" -> ");
-                self.target(target);
+            ActionKind::If { branches, otherwise } => {
+                for branch in branches {
+                    self.whole(&branch.condition);
+                    self.close_parens();
+                    self.actions(&branch.actions);
+                }
+                if let Some(actions) = otherwise {
+                    self.word();
+                    self.actions(actions);
+                }
             }
-            ActionKind::Stop(reason) => {
-                self.put("stop");
-                self.message(reason);
-            }
-            ActionKind::If { branches, otherwise } => self.branches(branches, otherwise),
+            ActionKind::ChangeMode { .. } | ActionKind::Stop(_) => {}
         }
     }
 
-    fn place(&mut self, place: &Place) {
-        if let Some(owner) = &place.owner {
-            self.put(&owner.text);
-            self.put(".");
-        }
-        self.put(&place.variable.text);
-    }
-
-    fn branches(&mut self, branches: &[Branch], otherwise: &Option<Actions>) {
-        for (k, branch) in branches.iter().enumerate() {
-            self.word_and(if k > 0 { " else if " } else { "if " }, &branch.condition);
-            self.put(" ");
-            self.lines(&branch.actions);
-        }
-        if let Some(actions) = otherwise {
-            self.put(" else ");
-            self.lines(actions);
-        }
-    }
-
-    /// Actions with a line for each.
-    fn lines(&mut self, actions: &Actions) {
-        self.block(&actions.actions, |p, each| p.line(|p| p.action(each)));
-    }
-
-    fn interaction_item(&mut self, item: &InteractionItem) {
-        match item {
-            InteractionItem::Let(definition) => self.definition(definition),
-            InteractionItem::Transition(transition) => self.transition(transition),
-        }
-    }
-
-    fn instance(&mut self, instance: &Instance) {
-        self.put(&instance.name.text);
-        self.put(" = ");
-        self.constructor(&instance.constructor);
-    }
-
+    /// `Type[n](a = 1) in Mode from csv("file.csv")`
     fn constructor(&mut self, constructor: &Constructor) {
-        self.put(&constructor.agent.text);
+        self.open(true);
+        self.up_to(constructor.agent.span.end);
         match &constructor.count {
+            Some(Count::Exactly(count)) => self.exprs(std::slice::from_ref(count)),
+            Some(Count::AllRows(span)) => self.up_to(span.end),
             None => {}
-            Some(Count::AllRows(_)) => self.put("[]"),
-            Some(Count::Exactly(count)) => {
-                self.put("[");
-                self.expr(count);
-                self.put("]");
-            }
         }
-        if !constructor.args.is_empty() {
-            self.put("(");
-            self.list(&constructor.args, |p, arg| {
-                p.put(&arg.name.text);
-                p.given(" = ", &arg.given);
-            });
-            self.put(")");
+        if self.peek() == "(" {
+            self.brackets(&constructor.args, |w, arg| w.value(&arg.given.value));
         }
         if let Some(mode) = &constructor.start {
-            self.put(" in ");
-            self.target(mode);
+            self.may_continue();
+            self.up_to(mode.span.end);
         }
-        self.clause("from", &constructor.source);
+        self.clause(&constructor.source);
+        self.up_to(constructor.span.end);
+        self.close();
     }
 
     fn formula(&mut self, formula: &Formula) {
+        self.open(true);
         match &formula.kind {
-            FormulaKind::Always(window, inner) => {
-                self.put("always");
+            FormulaKind::Always(window, inner) | FormulaKind::Eventually(window, inner) => {
+                self.word();
                 self.window(window);
-                self.formula(inner);
-            }
-            FormulaKind::Eventually(window, inner) => {
-                self.put("eventually");
-                self.window(window);
+                self.may_continue();
+                self.up_to(inner.span.start);
                 self.formula(inner);
             }
             FormulaKind::Until { before, window, goal } => {
-                self.expr(before);
-                self.put(" until");
+                self.whole(before);
+                self.close_parens();
+                self.may_continue();
+                self.word();
                 self.window(window);
-                self.expr(goal);
+                self.whole(goal);
             }
-            FormulaKind::Holds(condition) => self.expr(condition),
+            FormulaKind::Holds(condition) => self.whole(condition),
         }
+        self.up_to(formula.span.end);
+        self.close();
     }
 
     fn window(&mut self, window: &Option<Window>) {
         if let Some(window) = window {
-            self.put(" [");
-            self.expr(&window.from);
-            self.put(", ");
-            self.expr(&window.to);
-            self.put("]");
+            self.whole(&window.from);
+            self.whole(&window.to);
+            self.up_to(window.span.end);
         }
-        self.put(" ");
     }
 
     fn setting(&mut self, setting: &RunSetting) {
         match &setting.kind {
-            RunSettingKind::Until(end) => self.word_and("until ", end),
-            RunSettingKind::StopWhen(condition) => self.word_and("stop when ", condition),
-            RunSettingKind::Record { columns, period, file } => {
-                self.put("record ");
-                self.list(columns, |p, column| p.expr(column));
-                self.clause("every", period);
-                self.put(" to ");
-                self.quoted(&file.value);
+            RunSettingKind::Until(value) | RunSettingKind::StopWhen(value) => self.whole(value),
+            RunSettingKind::Record { columns, period, .. } => {
+                self.word();
+                self.open(true);
+                for (k, column) in columns.iter().enumerate() {
+                    if k > 0 {
+                        self.comma();
+                    }
+                    self.may_continue();
+                    self.whole(column);
+                }
+                self.clause(period);
+                self.close_parens();
+                self.may_continue();
+                self.up_to(setting.span.end);
+                self.close();
             }
-            RunSettingKind::Output { name, file } => {
-                self.put(&name.text);
-                self.put(" to ");
-                self.quoted(&file.value);
-            }
-            RunSettingKind::Set { name, value } => {
-                self.put(&name.text);
-                self.put(" ");
-                self.expr(value);
+            RunSettingKind::Output { .. } => {}
+            RunSettingKind::Set { value, .. } => {
+                self.word();
+                self.begin_expression();
+                self.whole(value);
             }
         }
     }

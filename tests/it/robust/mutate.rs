@@ -319,7 +319,7 @@ fn with_bytes(dice: &mut Dice, text: &str) -> String {
 }
 
 /// The text in tokens, white space and comments among them; together they are the text.
-fn cut(text: &str) -> Vec<String> {
+pub fn cut(text: &str) -> Vec<String> {
     let mut tokens = Vec::new();
     let mut rest = text;
     while let Some(first) = rest.chars().next() {
