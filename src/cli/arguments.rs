@@ -102,7 +102,7 @@ pub(super) struct EngineArguments {
     /// (Rodas5P, orders 5 and 4)
     #[arg(long, value_name = "METHOD", value_parser = integrator)]
     pub(super) integrator: Option<Integrator>,
-    /// What evaluates the equations: machine code, or the interpreter (the same bits)
+    /// What evaluates the equations: the interpreter, and machine code as soon as that pays; or one of the two (the same bits)
     #[arg(long, value_enum, default_value_t)]
     pub(super) backend: BackendName,
     /// How many threads may work; never changes a result (the plain engine uses one)
@@ -231,7 +231,7 @@ pub(super) struct CompareArguments {
     /// Run until this time, in seconds
     #[arg(long, value_name = "T", value_parser = finite_not_negative)]
     pub(super) until: Option<f64>,
-    /// What evaluates the equations: machine code, or the interpreter (the same bits)
+    /// What evaluates the equations: the interpreter, and machine code as soon as that pays; or one of the two (the same bits)
     #[arg(long, value_enum, default_value_t)]
     pub(super) backend: BackendName,
     /// Write a row for each run here
@@ -363,8 +363,10 @@ impl Engine {
 /// What evaluates the equations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum BackendName {
-    /// Machine code
+    /// The interpreter, and machine code as soon as it pays
     #[default]
+    Auto,
+    /// Machine code
     Jit,
     /// The interpreter
     Interp,

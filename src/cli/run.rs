@@ -89,6 +89,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     let (busiest, writing_seconds) = (tables.busiest(BUSIEST), tables.writing().as_secs_f64());
     drop(tables);
 
+    let (functions, code_bytes) = program.machine_code();
     let report = Report {
         model: &name_of(&arguments.model),
         algorithm: algorithm.name(),
@@ -103,9 +104,9 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
         sources: &sources,
         cast: &cast,
         outcome: &outcome,
-        functions: program.cost.functions,
+        functions,
         instructions: program.cost.instructions,
-        code_bytes: program.cost.code_bytes,
+        code_bytes,
         busiest: &busiest,
         compile_parts: &compile_parts,
         writing_seconds,
@@ -170,6 +171,7 @@ pub(super) fn compile(
     let system = calculus::derive(model)?;
     warnings.extend(calculus::lint(&system));
     let backend = match backend {
+        BackendName::Auto => Backend::Auto,
         BackendName::Jit => Backend::Jit,
         BackendName::Interp => Backend::Interpreter,
     };
@@ -309,12 +311,13 @@ pub(super) fn cast_of(program: &Program) -> Cast {
 fn code_of(backend: BackendName) -> &'static str {
     match backend {
         BackendName::Jit => "machine code",
-        BackendName::Interp => "tapes",
+        BackendName::Auto | BackendName::Interp => "tapes",
     }
 }
 
 fn backend_name(backend: BackendName) -> &'static str {
     match backend {
+        BackendName::Auto => "auto",
         BackendName::Jit => "jit",
         BackendName::Interp => "interp",
     }

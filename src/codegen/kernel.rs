@@ -6,11 +6,12 @@
 //! full of NaN.
 
 use std::cell::RefCell;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use crate::codegen::block::{Block, BlockScratch, BlockStep, BlockTape, BlockView};
 use crate::codegen::interpret;
 use crate::codegen::jit::{KernelCode, StepCode, StepRows};
+use crate::codegen::later::Later;
 use crate::codegen::tape::{Instruction, Row, Tape};
 use crate::math::Interval;
 
@@ -134,23 +135,34 @@ impl Reads {
     }
 }
 
+/// By what a kernel is evaluated.
+#[derive(Debug)]
+pub(super) enum Means {
+    /// The interpreter.
+    Tape,
+    /// Machine code.
+    Code(KernelCode),
+    /// The interpreter, until there is machine code; the number of the function.
+    Later(Arc<Later>, usize),
+}
+
 /// A function of a system that can be called.
 #[derive(Debug)]
 pub struct Kernel {
-    tape: Tape,
+    tape: Arc<Tape>,
     reads: Reads,
     operations: u64,
-    code: Option<KernelCode>,
+    means: Means,
     /// Made when a block is evaluated for the first time.
     block: OnceLock<BlockTape>,
 }
 
 impl Kernel {
-    /// A kernel of a tape, with its machine code where there is some.
-    pub(super) fn new(tape: Tape, code: Option<KernelCode>) -> Self {
+    /// A kernel of a tape.
+    pub(super) fn new(tape: Arc<Tape>, means: Means) -> Self {
         let is_applied = |instruction: &&Instruction| matches!(instruction, Instruction::Apply { .. });
         let operations = tape.instructions.iter().filter(is_applied).count() as u64;
-        Self { reads: Reads::of(&tape), operations, tape, code, block: OnceLock::new() }
+        Self { reads: Reads::of(&tape), operations, tape, means, block: OnceLock::new() }
     }
 
     /// Computes the outputs, the same bits on every back end. `out` must hold at least as many as there are.
@@ -158,10 +170,22 @@ impl Kernel {
     pub fn eval(&self, slots: &[AgentView<'_>], time: f64, out: &mut [f64]) {
         assert!(self.reads.fit(slots), "a row is shorter than the kernel's reads");
         assert!(out.len() >= self.tape.outputs.len(), "no room for the kernel's outputs");
-        match &self.code {
+        match self.code() {
             // SAFETY: the rows are as long as the code reads and `out` is as long as it writes, both just asserted.
             Some(code) => unsafe { code.call(self.reads.slots.len(), slots, time, out) },
             None => interpret_numbers(&self.tape, slots, time, out),
+        }
+    }
+
+    /// Its machine code, if there is some by now.
+    #[inline]
+    fn code(&self) -> Option<&KernelCode> {
+        match &self.means {
+            Means::Tape => None,
+            Means::Code(code) => Some(code),
+            Means::Later(later, number) => {
+                later.code(self.tape.instructions.len())?.kernels[*number].as_ref()
+            }
         }
     }
 
@@ -235,7 +259,11 @@ impl Kernel {
 
     /// Whether it runs as machine code.
     pub fn is_compiled(&self) -> bool {
-        self.code.is_some()
+        match &self.means {
+            Means::Tape => false,
+            Means::Code(_) => true,
+            Means::Later(later, number) => later.made().is_some_and(|code| code.kernels[*number].is_some()),
+        }
     }
 }
 
@@ -265,18 +293,27 @@ fn interpret_numbers(tape: &Tape, slots: &[AgentView<'_>], time: f64, out: &mut 
 pub struct StepKernel {
     n: usize,
     reads: Reads,
-    code: StepCode,
+    means: StepMeans,
+}
+
+/// By what a step is taken.
+#[derive(Debug)]
+pub(super) enum StepMeans {
+    /// Machine code.
+    Code(StepCode),
+    /// Machine code, when there is some; the number of the step.
+    Later(Arc<Later>, usize),
 }
 
 impl StepKernel {
     /// A step of the flow whose rates `tape` computes.
-    pub(super) fn new(tape: &Tape, code: StepCode) -> Self {
+    pub(super) fn new(tape: &Tape, means: StepMeans) -> Self {
         let n = tape.outputs.len();
         let mut reads = Reads::of(tape);
         if n > 0 {
             reads.include(0, Row::States, n);
         }
-        Self { n, reads, code }
+        Self { n, reads, means }
     }
 
     /// A step from `time`, s, of length `h`, s, in the order of operations that
@@ -284,6 +321,7 @@ impl StepKernel {
     ///
     /// Slot 0 holds the n states at `time`; of the other slots only auxiliary columns are read. `k` holds 7 n rates,
     /// stage by stage: the first n, at the start, are given, the others are written. `x_new` and `err` receive n each.
+    /// False, and nothing is done, if there is no code for it yet.
     #[inline]
     pub fn step(
         &self,
@@ -293,12 +331,20 @@ impl StepKernel {
         k: &mut [f64],
         x_new: &mut [f64],
         err: &mut [f64],
-    ) {
+    ) -> bool {
+        let code = match &self.means {
+            StepMeans::Code(code) => code,
+            StepMeans::Later(later, number) => match later.made().and_then(|code| code.steps.get(*number)) {
+                Some((_, code)) => code,
+                None => return false,
+            },
+        };
         assert!(self.reads.fit(slots), "a row is shorter than the kernel's reads");
         let room = k.len() >= 7 * self.n && x_new.len() >= self.n && err.len() >= self.n;
         assert!(room, "no room for the step");
         // SAFETY: all lengths that the code relies on were just asserted.
-        unsafe { self.code.call(self.reads.slots.len(), slots, time, h, StepRows { k, x_new, err }) };
+        unsafe { code.call(self.reads.slots.len(), slots, time, h, StepRows { k, x_new, err }) };
+        true
     }
 
     /// How many states there are.

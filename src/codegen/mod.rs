@@ -12,16 +12,19 @@ mod emit;
 mod step;
 mod routine;
 mod jit;
+mod later;
 pub mod kernel;
 pub mod program;
 pub mod trace;
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use crate::base::Diagnostic;
 use crate::calculus::system::{AgentSystem, System};
 use crate::codegen::jit::Code;
-use crate::codegen::kernel::{Kernel, StepKernel};
+use crate::codegen::kernel::{Kernel, Means, StepKernel, StepMeans};
+use crate::codegen::later::Later;
 use crate::codegen::program::{Cost, Program};
 use crate::codegen::series::{NoSeries, SeriesTape};
 use crate::codegen::tape::Tape;
@@ -33,27 +36,32 @@ pub enum Backend {
     Interpreter,
     /// Machine code made by Cranelift.
     Jit,
+    /// The interpreter, and machine code as soon as it pays.
+    Auto,
 }
 
 /// Compiles every function of a system.
 pub fn compile(system: System, backend: Backend) -> Result<Program, Diagnostic> {
     let start = Instant::now();
     let tapes = record(&system);
-    let code = match backend {
-        Backend::Interpreter => Code::none(tapes.len()),
-        Backend::Jit => jit::assemble(&routine::routines(&system, &tapes), tapes.len())?,
-    };
+    let (mut code, mut later) = (Code::none(tapes.len()), None);
+    match backend {
+        Backend::Interpreter => {}
+        Backend::Jit => code = jit::assemble(&routine::routines(&system, &tapes), tapes.len())?,
+        Backend::Auto => later = Some(Arc::new(Later::new(&routine::routines(&system, &tapes), &tapes))),
+    }
     let cost = measure(&tapes, &code, start);
-    Ok(link(system, tapes, code, cost))
+    Ok(link(system, tapes, code, later, cost))
 }
 
 /// A tape for each function, same number.
-fn record(system: &System) -> Vec<Tape> {
-    system.functions.iter().map(|function| tape::record(&system.graph, &function.outputs)).collect()
+fn record(system: &System) -> Vec<Arc<Tape>> {
+    let tape = |outputs: &[_]| Arc::new(tape::record(&system.graph, outputs));
+    system.functions.iter().map(|function| tape(&function.outputs)).collect()
 }
 
 /// What it took.
-fn measure(tapes: &[Tape], code: &Code, start: Instant) -> Cost {
+fn measure(tapes: &[Arc<Tape>], code: &Code, start: Instant) -> Cost {
     let compiled = code.kernels.iter().flatten().count();
     Cost {
         functions: compiled + code.steps.len(),
@@ -65,16 +73,26 @@ fn measure(tapes: &[Tape], code: &Code, start: Instant) -> Cost {
 }
 
 /// Puts structure, tapes and machine code together.
-fn link(system: System, tapes: Vec<Tape>, code: Code, cost: Cost) -> Program {
+fn link(system: System, tapes: Vec<Arc<Tape>>, code: Code, later: Option<Arc<Later>>, cost: Cost) -> Program {
     let modes = system.types.iter().map(|ty| ty.modes.len());
     let mut steps: Vec<Vec<Option<StepKernel>>> = modes.map(|n| (0..n).map(|_| None).collect()).collect();
     for (task, code) in code.steps {
-        steps[task.ty][task.mode] = Some(StepKernel::new(&tapes[task.function], code));
+        steps[task.ty][task.mode] = Some(StepKernel::new(&tapes[task.function], StepMeans::Code(code)));
+    }
+    for (number, task) in later.iter().flat_map(|later| later.steps()).enumerate() {
+        let means = later.clone().map(|later| StepMeans::Later(later, number));
+        steps[task.ty][task.mode] = means.map(|means| StepKernel::new(&tapes[task.function], means));
     }
     let series = series(&system, |_, _, found| found.ok());
-    let kernels = tapes.into_iter().zip(code.kernels).map(|(tape, code)| Kernel::new(tape, code)).collect();
+    let means = |number: usize, code: Option<_>| match (code, &later) {
+        (Some(code), _) => Means::Code(code),
+        (None, Some(later)) => Means::Later(Arc::clone(later), number),
+        (None, None) => Means::Tape,
+    };
+    let kernels = tapes.into_iter().zip(code.kernels).enumerate();
+    let kernels = kernels.map(|(number, (tape, code))| Kernel::new(tape, means(number, code))).collect();
     let System { graph, functions, types, interactions, population, run } = system;
-    Program { graph, functions, types, interactions, population, run, kernels, steps, series, cost }
+    Program { graph, functions, types, interactions, population, run, kernels, steps, series, cost, later }
 }
 
 /// What is made of the series of each mode's flow, or of why there is none: for each type, for each mode.

@@ -1,5 +1,7 @@
 //! The product of this floor: a program that runs. The structure of the system with a kernel for every function of it.
 
+use std::sync::Arc;
+
 use crate::base::Arena;
 use crate::calculus::access::action_lists;
 use crate::calculus::graph::Graph;
@@ -13,6 +15,7 @@ pub use crate::calculus::system::{
     TransitionSystem, Trigger, VarRef, Whither,
 };
 use crate::codegen::kernel::{Kernel, StepKernel};
+use crate::codegen::later::Later;
 use crate::codegen::series::SeriesTape;
 
 /// A model, compiled.
@@ -38,6 +41,8 @@ pub struct Program {
     pub series: Vec<Vec<Option<SeriesTape>>>,
     /// What compilation took.
     pub cost: Cost,
+    /// The machine code that is made when it pays.
+    pub(super) later: Option<Arc<Later>>,
 }
 
 /// The size and time of a compilation; the same for any number of agents, but for the time.
@@ -56,6 +61,14 @@ pub struct Cost {
 }
 
 impl Program {
+    /// What there is of machine code by now: how many functions, and bytes.
+    pub fn machine_code(&self) -> (usize, usize) {
+        let Some(code) = self.later.as_ref().and_then(|later| later.made()) else {
+            return (self.cost.functions, self.cost.code_bytes);
+        };
+        (code.kernels.iter().flatten().count() + code.steps.len(), code.bytes)
+    }
+
     /// All lists of actions.
     pub fn action_lists(&self) -> impl Iterator<Item = &ActionList> {
         action_lists(&self.types, &self.interactions)

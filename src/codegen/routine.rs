@@ -2,6 +2,8 @@
 //!
 //! In: tapes. Out: a list of [`Routine`]s, and the Cranelift IR of each, which depends on nothing but the tape.
 
+use std::sync::Arc;
+
 use cranelift_codegen::ir::types::{F64, I64};
 use cranelift_codegen::ir::{AbiParam, ExtFuncData, ExternalName, Function, Signature, UserFuncName};
 use cranelift_codegen::isa::CallConv;
@@ -40,7 +42,7 @@ pub enum Kind {
 }
 
 /// All routines of a system, kernels first.
-pub fn routines<'p>(system: &'p System, tapes: &'p [Tape]) -> Vec<Routine<'p>> {
+pub fn routines<'p>(system: &'p System, tapes: &'p [Arc<Tape>]) -> Vec<Routine<'p>> {
     let name = |function: usize| system.functions.as_slice()[function].name.as_str();
     let short = tapes.iter().enumerate().filter(|(_, tape)| tape.instructions.len() <= KERNEL_LENGTH_MAX);
     let kernels =

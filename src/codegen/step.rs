@@ -3,6 +3,8 @@
 //! In: the tape of a flow that reads no foreign state. Out: a function that makes all stages of [`TSIT5`] with the
 //! states, the rates and the new state in registers, in the order of operations that `math::runge_kutta` lays down.
 
+use std::sync::Arc;
+
 use cranelift_codegen::ir::Value;
 
 use crate::calculus::system::System;
@@ -27,7 +29,7 @@ pub struct Task {
 }
 
 /// The steps worth compiling: of every mode whose flow reads no foreign state.
-pub fn plan(system: &System, tapes: &[Tape]) -> Vec<Task> {
+pub fn plan(system: &System, tapes: &[Arc<Tape>]) -> Vec<Task> {
     let mut tasks = Vec::new();
     for (ty, agent) in system.types.iter().enumerate() {
         for (mode, equations) in agent.modes.iter().enumerate() {

@@ -271,9 +271,11 @@ impl Stepper {
             self.integrator.dense(stretch, &agent.states, first, &mut agent.segment);
             agent.states.copy_from_slice(&self.integrator.trial.x_new[first..first + n_states]);
             first += n_states;
-            self.counts.steps += 1;
-            self.counts.steps_stiff += u64::from(self.integrator.regime() == Regime::Stiff);
-            self.counts.steps_of_type[agent.ty] += 1;
+            let is_stiff = self.integrator.regime() == Regime::Stiff;
+            let n_new = u64::from(is_stiff || !agents.cold.has_counted(member, stretch.end));
+            self.counts.steps += n_new;
+            self.counts.steps_stiff += u64::from(is_stiff);
+            self.counts.steps_of_type[agent.ty] += n_new;
         }
         self.integrator.keep(stretch, &mut group.integration);
         group.clock = stretch.end;

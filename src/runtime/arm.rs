@@ -8,9 +8,10 @@ use crate::runtime::act::Written;
 use crate::runtime::engine::{Due, Engine};
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::fold::Folded;
-use crate::runtime::guards::{Origin, closed, inside};
+use crate::runtime::guards::{AtomState, Origin, closed, inside};
 use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::{Depth, depth_read};
+use crate::runtime::sleep::Regard;
 use crate::runtime::solve::{time_resolution, ulp};
 use crate::runtime::truth::{self, Side, Truths};
 
@@ -214,7 +215,7 @@ impl<'p> Engine<'p, '_> {
     }
 
     /// Whether a link by which a comparison reaches an agent leads somewhere else now.
-    fn leads_elsewhere(&self, index: usize, written: &Written) -> bool {
+    pub fn leads_elsewhere(&self, index: usize, written: &Written) -> bool {
         if written.relinked.is_empty() {
             return false;
         }
@@ -239,11 +240,12 @@ impl<'p> Engine<'p, '_> {
             return;
         }
         state.certified = time;
-        state.far = false;
+        state.far = f64::INFINITY;
         state.flip = f64::INFINITY;
         state.settled = false;
         state.version += 1;
-        self.queues.uncertified.push(Due { time, number: index as u32, version: state.version });
+        let due = Due { time, number: index as u32, version: state.version };
+        self.queues.push_uncertified(due, self.window_end);
     }
 
     /// Rule 3, "On the boundary": by the first of two rates that is not zero within rounding.
@@ -327,12 +329,19 @@ impl<'p> Engine<'p, '_> {
             }
             let fresh = armed.contains(&instance);
             for index in self.concerned_atoms(instance, &reach) {
-                if self.guards.atoms[index].left_out || !fresh && self.stays_far(index, written) {
+                if self.guards.atoms[index].left_out {
                     continue;
                 }
+                let regard = if fresh { Regard::Changed } else { self.regard(index, written) };
                 let (atom, slots) = self.guards.atom_slots(&self.agents, index);
                 let mut read = atom.slots.iter().map(|&slot| slots[slot]);
-                if !fresh && self.reads_written(index, written) {
+                let AtomState { slack, rooted, touched, .. } = self.guards.atoms[index];
+                let is_plain = slack == 0.0 && !rooted && !touched;
+                if regard == Regard::Far {
+                    continue;
+                } else if regard == Regard::AsBefore && is_plain {
+                    self.recertify(index, self.present.time);
+                } else if !fresh && self.reads_written(index, written) {
                     self.settle(index, Rule::Woken, written);
                 } else if !atom.folds.is_empty() || read.any(is_concerned) {
                     let state = &self.guards.atoms[index];

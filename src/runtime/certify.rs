@@ -59,7 +59,7 @@ impl Engine<'_, '_> {
     fn certify(&mut self, index: usize, blocked: bool) {
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
         let from = self.guards.atoms[index].certified;
-        self.guards.atoms[index].far = false;
+        self.guards.atoms[index].far = f64::INFINITY;
         let kernel = self.program.kernel(atom.value);
         let folds = self.truths().gather(self.guards.atoms[index].instance, kernel, &slots, Side::After);
         let mut to = self.time_end;
@@ -69,7 +69,9 @@ impl Engine<'_, '_> {
         if !cold.is_empty() {
             if !self.sleep_beyond(index, self.window_end) {
                 self.recertify(index, from);
-                cold.into_iter().for_each(|agent| self.thaw(agent));
+                // All else is certified up to `from`.
+                let time = from.min(self.next_cause()).min(self.recorder.next()).max(self.present.time);
+                cold.into_iter().for_each(|agent| self.thaw_at(agent, time));
             }
             return;
         }
@@ -88,6 +90,10 @@ impl Engine<'_, '_> {
         let may_sleep = !blocked && fold::depth(self.program, kernel, &folds) == Depth::States;
         if may_sleep && let Some(until) = self.sleep(index, (atom, &slots, &folds), from, to) {
             self.certified(index, until);
+            return;
+        }
+        if !blocked && self.is_clear(index, (from, to)) {
+            self.certified(index, to);
             return;
         }
         let state = self.guards.atoms[index];
@@ -155,10 +161,11 @@ impl Engine<'_, '_> {
             state.settled = false;
         }
         state.certified = until;
-        state.far = false;
+        state.far = f64::INFINITY;
         state.version += 1;
         if until < self.time_end {
-            self.queues.uncertified.push(Due { time: until, number: index as u32, version: state.version });
+            let due = Due { time: until, number: index as u32, version: state.version };
+            self.queues.push_uncertified(due, self.window_end);
         }
     }
 

@@ -12,7 +12,7 @@ use crate::runtime::solve::series_step;
 use crate::runtime::tracks::TrackStep;
 
 /// A place in a herd.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Place {
     /// Which herd; [`NONE`] if it is in none.
     herd: u32,
@@ -20,7 +20,12 @@ struct Place {
     place: u32,
     /// Whether it runs ahead now.
     cold: bool,
+    /// Up to where the steps have been counted that it takes when it runs ahead no more, s.
+    counted: f64,
 }
+
+/// The place of an agent that is in no herd.
+const NOWHERE: Place = Place { herd: NONE, place: 0, cold: false, counted: f64::NEG_INFINITY };
 
 const NONE: u32 = u32::MAX;
 
@@ -54,8 +59,7 @@ impl<'p> Cold<'p> {
         let modes = |ty: usize| 0..program.types[ty].modes.len();
         let of_mode: Vec<Vec<Option<u32>>> =
             (0..program.types.len()).map(|ty| modes(ty).map(|mode| herd_of(ty, mode)).collect()).collect();
-        let nowhere = Place { herd: NONE, place: 0, cold: false };
-        let places = if herds.is_empty() { Vec::new() } else { vec![nowhere; n_agents] };
+        let places = if herds.is_empty() { Vec::new() } else { vec![NOWHERE; n_agents] };
         Self { herds, of_mode, places }
     }
 
@@ -73,6 +77,13 @@ impl<'p> Cold<'p> {
     #[inline]
     pub fn is_cold(&self, agent: usize) -> bool {
         self.places.get(agent).is_some_and(|place| place.cold)
+    }
+
+    /// How far a cold agent has come, and its states there; none if it is not cold.
+    #[inline]
+    pub fn now(&self, agent: usize) -> Option<(f64, &[f64])> {
+        let place = self.places.get(agent).filter(|place| place.cold)?;
+        Some(self.herds[place.herd as usize].now(place.place as usize))
     }
 
     /// The herd of a cold agent, and its place there.
@@ -117,7 +128,7 @@ impl<'p> Cold<'p> {
 
     /// Has the steps of a cold agent kept when it is advanced next.
     pub fn want_track(&mut self, agent: usize) {
-        let Place { herd, place, cold } = self.places[agent];
+        let Place { herd, place, cold, .. } = self.places[agent];
         if cold {
             self.herds[herd as usize].tracks.want(place as usize);
         }
@@ -125,11 +136,17 @@ impl<'p> Cold<'p> {
 
     /// The steps that were kept of an agent are not its steps any more.
     pub fn void_track(&mut self, agent: usize) {
-        if let Some(&Place { herd, place, .. }) = self.places.get(agent)
-            && herd != NONE
+        if let Some(Place { herd, place, counted, .. }) = self.places.get_mut(agent)
+            && *herd != NONE
         {
-            self.herds[herd as usize].tracks.void(place as usize);
+            self.herds[*herd as usize].tracks.void(*place as usize);
+            *counted = f64::NEG_INFINITY;
         }
+    }
+
+    /// Whether a step of an agent that ends at `end` was counted when the agent ran ahead.
+    pub fn has_counted(&self, agent: usize, end: f64) -> bool {
+        self.places.get(agent).is_some_and(|place| end <= place.counted)
     }
 
     /// The step that was kept of an agent, not cold now, from `t` on, and the states at its end.
@@ -152,6 +169,11 @@ impl<'p> Cold<'p> {
         herd.tracks.range(place, state, span)
     }
 
+    /// Makes the tracks that are wanted, of ways that are followed from `from` on at least.
+    pub fn make_tracks(&mut self, from: f64) {
+        self.herds.iter_mut().for_each(|herd| herd.make_tracks(from));
+    }
+
     /// The time from which the way of a cold agent is followed, s.
     pub fn known_from(&self, agent: usize) -> f64 {
         let (herd, place) = self.find(agent);
@@ -165,33 +187,48 @@ impl<'p> Cold<'p> {
         (t, states.into())
     }
 
-    /// Has an agent, which may be cold in its mode, run ahead from `(t, states)`.
-    pub fn freeze(&mut self, agent: usize, ty: usize, mode: usize, (t, states): (f64, &[f64]), aux: &[f64]) {
+    /// Bounds of the states of a cold agent, in order, from the begin of the window on to where it has come.
+    pub fn bounds(&self, agent: usize) -> &[Interval] {
+        let (herd, place) = self.find(agent);
+        herd.bounds(place)
+    }
+
+    /// Has an agent, which may be cold in its mode, run ahead from `(t, states)`; `bounds` are those of its states from the
+    /// present to there.
+    pub fn freeze(
+        &mut self,
+        agent: usize,
+        (ty, mode): (usize, usize),
+        (t, states): (f64, &[f64]),
+        aux: &[f64],
+        bounds: impl Iterator<Item = Interval>,
+    ) {
         let Some(herd) = self.of_mode[ty][mode] else { return };
         if self.places[agent].herd != herd {
             self.leave(agent);
             let place = self.herds[herd as usize].push(agent) as u32;
-            self.places[agent] = Place { herd, place, cold: false };
+            self.places[agent] = Place { herd, place, ..NOWHERE };
         }
         let place = &mut self.places[agent];
         place.cold = true;
-        self.herds[herd as usize].start(place.place as usize, t, states, aux);
+        self.herds[herd as usize].start(place.place as usize, (t, states), aux, bounds);
     }
 
     /// Has an agent run ahead no more; it keeps its place.
     pub fn thaw(&mut self, agent: usize) {
         let place = &mut self.places[agent];
+        let herd = &mut self.herds[place.herd as usize];
         place.cold = false;
-        self.herds[place.herd as usize].halt(place.place as usize);
+        place.counted = herd.now(place.place as usize).0;
+        herd.halt(place.place as usize);
     }
 
     /// Makes room for an agent in a place that nobody has.
     pub fn admit(&mut self, place: usize) {
-        let nowhere = Place { herd: NONE, place: 0, cold: false };
         if place == self.places.len() {
-            self.places.push(nowhere);
+            self.places.push(NOWHERE);
         }
-        self.places[place] = nowhere;
+        self.places[place] = NOWHERE;
     }
 
     /// Takes an agent out that is not cold.

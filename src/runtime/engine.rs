@@ -60,8 +60,10 @@ impl Ord for Due {
 /// What is due when.
 #[derive(Clone, Debug, Default)]
 pub struct Queues {
-    /// Atom instances, at the end of their certified stretch.
+    /// Atom instances, at the end of their certified stretch, if that lies in the window at hand.
     pub uncertified: BinaryHeap<Due>,
+    /// Those that are due beyond the window, in no order.
+    pub later: Vec<Due>,
     /// Atom instances, at their next change.
     pub flips: BinaryHeap<Due>,
     /// Guard instances with a delay or period; the version is their arming.
@@ -71,8 +73,28 @@ pub struct Queues {
 }
 
 impl Queues {
+    /// Has an atom instance looked at when it is due, in the window that ends at `window_end` or in another.
+    #[inline]
+    pub fn push_uncertified(&mut self, due: Due, window_end: f64) {
+        if due.time < window_end {
+            self.uncertified.push(due);
+        } else {
+            self.later.push(due);
+        }
+    }
+
+    /// Takes out the atom instances that are due before `until`, by number.
+    pub fn take_uncertified(&mut self, until: f64, is_valid: impl Fn(&Due) -> bool) -> Vec<Due> {
+        self.later.extend(std::mem::take(&mut self.uncertified));
+        let mut due: Vec<Due> = self.later.extract_if(.., |due| due.time < until).collect();
+        due.retain(is_valid);
+        due.sort_unstable_by_key(|due| due.number);
+        due
+    }
+
     /// Atom instances have new numbers: by old number, `moved`.
     pub fn renumber_atoms(&mut self, moved: &[u32]) {
+        self.later.iter_mut().for_each(|due| due.number = moved[due.number as usize]);
         for queue in [&mut self.uncertified, &mut self.flips] {
             let mut all = std::mem::take(queue).into_vec();
             all.iter_mut().for_each(|due| due.number = moved[due.number as usize]);
@@ -341,6 +363,9 @@ impl<'p, 'o> Engine<'p, 'o> {
         compact(&mut queues.uncertified, guards.atoms.len(), |due| {
             guards.atoms[due.number as usize].version == due.version
         });
+        if queues.later.len() > 4 * guards.atoms.len() + 1024 {
+            queues.later.retain(|due| guards.atoms[due.number as usize].version == due.version);
+        }
         compact(&mut queues.flips, guards.atoms.len(), |due| {
             guards.atoms[due.number as usize].version == due.version
         });

@@ -197,11 +197,13 @@ impl Flow for GroupFlow<'_, '_> {
         let [agent] = *self.members else { return false };
         let agent = &self.agents.agents[agent];
         let Some(kernel) = &self.agents.program.steps[agent.ty][agent.mode] else { return false };
+        let views = views(self.agents, &self.slots[0], self.absent, rows.x);
+        if !kernel.step(&views, t, h, rows.k, rows.x_new, rows.error) {
+            return false;
+        }
         self.evaluations += WHOLE_STEP;
         self.operations +=
             WHOLE_STEP * self.agents.program.kernel(self.agents.flow(self.members[0]).rates).operations();
-        let views = views(self.agents, &self.slots[0], self.absent, rows.x);
-        kernel.step(&views, t, h, rows.k, rows.x_new, rows.error);
         true
     }
 

@@ -1,11 +1,10 @@
 //! A grid of boxes: finds all pairs that overlap without looking at all pairs.
 //!
 //! Every box lies in all cells that it overlaps, cells being about as wide as boxes are. Two that overlap are found
-//! once, in the cell of the lower corner of what they have in common. The cells of all boxes are one sorted list; boxes
-//! that change afterwards are entered beside it. A box too large for the cells is compared with every other.
+//! once, in the cell of the lower corner of what they have in common. Cells share buckets by their lowest bits; boxes that
+//! change afterwards are entered beside these. A box too large for the cells is compared with every other.
 
 use rustc_hash::FxHashMap;
-use smallvec::SmallVec;
 
 use crate::math::Interval;
 
@@ -27,7 +26,10 @@ pub struct Grid {
     boxes: Vec<Interval>,
     /// One over the width of a cell.
     scale: [f64; DIMENSIONS],
-    sorted: Vec<(Cell, u32)>,
+    /// Cells with boxes, by bucket.
+    entries: Vec<(Cell, u32)>,
+    /// Where each bucket begins in `entries`, and where the last ends.
+    starts: Vec<u32>,
     /// Where those of boxes that changed lie now.
     moved: FxHashMap<Cell, Vec<u32>>,
     /// Boxes that are too large.
@@ -46,14 +48,50 @@ impl Grid {
                 .fold((0.0, 0_usize), |(sum, count), width| (sum + width, count + 1));
             grid.scale[dimension] = if sum > 0.0 { count as f64 / (2.0 * sum) } else { 1.0 };
         }
+        let mut entries = Vec::with_capacity(2 * n_boxes);
         for number in 0..n_boxes as u32 {
-            match grid.cells(number) {
-                Some(cells) => grid.sorted.extend(cells.into_iter().map(|cell| (cell, number))),
-                None => grid.large.push(number),
+            if !grid.for_each_cell(number, &mut |cell| entries.push((cell, number))) {
+                grid.large.push(number);
             }
         }
-        grid.sorted.sort_unstable();
+        grid.fill(&entries);
         grid
+    }
+
+    /// Sorts entries into buckets.
+    fn fill(&mut self, entries: &[(Cell, u32)]) {
+        self.starts = vec![0; entries.len().next_power_of_two() + 1];
+        for &(cell, _) in entries {
+            let bucket = self.bucket(cell);
+            self.starts[bucket + 1] += 1;
+        }
+        for bucket in 1..self.starts.len() {
+            self.starts[bucket] += self.starts[bucket - 1];
+        }
+        let mut next = self.starts.clone();
+        self.entries = vec![(0, 0); entries.len()];
+        for &entry in entries {
+            let place = &mut next[self.bucket(entry.0)];
+            self.entries[*place as usize] = entry;
+            *place += 1;
+        }
+    }
+
+    /// The bucket of a cell: those of neighbours are near.
+    fn bucket(&self, cell: Cell) -> usize {
+        let mixed = cell ^ (cell >> 21).wrapping_mul(0x9E37_79B9) ^ (cell >> 42).wrapping_mul(0x85EB_CA6B);
+        mixed as usize & (self.starts.len() - 2)
+    }
+
+    /// All boxes in the bucket of a cell.
+    fn here(&self, cell: Cell) -> &[(Cell, u32)] {
+        match self.starts.len() {
+            0 => &[],
+            _ => {
+                let bucket = self.bucket(cell);
+                &self.entries[self.starts[bucket] as usize..self.starts[bucket + 1] as usize]
+            }
+        }
     }
 
     /// How many boxes there are.
@@ -69,11 +107,11 @@ impl Grid {
     /// Calls `visit` for every two boxes that overlap, once, the lower number first.
     pub fn for_each_pair(&self, visit: &mut dyn FnMut(u32, u32)) {
         debug_assert!(self.moved.is_empty(), "pairs are listed of a new grid");
-        for cell in self.sorted.chunk_by(|a, b| a.0 == b.0) {
-            for (k, &(number, a)) in cell.iter().enumerate() {
-                for &(_, b) in &cell[k + 1..] {
-                    // A cell that stands for several places may hold a box twice.
-                    if a != b && self.overlap(a, b) && self.corner(a, b) == number {
+        for bucket in self.starts.windows(2) {
+            let bucket = &self.entries[bucket[0] as usize..bucket[1] as usize];
+            for (k, &(cell, a)) in bucket.iter().enumerate() {
+                for &(_, b) in bucket[k + 1..].iter().filter(|entry| entry.0 == cell) {
+                    if self.overlap(a, b) && self.corner(a, b) == cell {
                         visit(a.min(b), a.max(b));
                     }
                 }
@@ -91,33 +129,28 @@ impl Grid {
     /// Changes a box.
     pub fn change(&mut self, number: u32, bounds: &[Interval]) {
         self.boxes[number as usize * self.n..][..self.n].copy_from_slice(bounds);
-        match self.cells(number) {
-            Some(cells) => {
-                for cell in cells {
-                    let moved = self.moved.entry(cell).or_default();
-                    if !moved.contains(&number) {
-                        moved.push(number);
-                    }
-                }
+        let mut moved = std::mem::take(&mut self.moved);
+        let is_small = self.for_each_cell(number, &mut |cell| {
+            let moved = moved.entry(cell).or_default();
+            if !moved.contains(&number) {
+                moved.push(number);
             }
-            None if !self.large.contains(&number) => self.large.push(number),
-            None => {}
+        });
+        self.moved = moved;
+        if !is_small && !self.large.contains(&number) {
+            self.large.push(number);
         }
     }
 
     /// All other boxes that overlap one, rising.
     pub fn around(&self, number: u32) -> Vec<u32> {
         let mut found = self.large.clone();
-        match self.cells(number) {
-            Some(cells) => {
-                for cell in cells {
-                    let first = self.sorted.partition_point(|entry| entry.0 < cell);
-                    let here = self.sorted[first..].iter().take_while(|entry| entry.0 == cell);
-                    found.extend(here.map(|entry| entry.1));
-                    found.extend(self.moved.get(&cell).into_iter().flatten());
-                }
-            }
-            None => found = (0..self.len() as u32).collect(),
+        let is_small = self.for_each_cell(number, &mut |cell| {
+            found.extend(self.here(cell).iter().filter(|entry| entry.0 == cell).map(|entry| entry.1));
+            found.extend(self.moved.get(&cell).into_iter().flatten());
+        });
+        if !is_small {
+            found = (0..self.len() as u32).collect();
         }
         found.sort_unstable();
         found.dedup();
@@ -142,21 +175,34 @@ impl Grid {
         (x * self.scale[dimension]).floor() as i64
     }
 
-    /// The cells that a box overlaps; none if there are too many.
-    fn cells(&self, number: u32) -> Option<SmallVec<[Cell; 8]>> {
-        let mut cells: SmallVec<[Cell; 8]> = SmallVec::from_elem(0, 1);
-        for (dimension, bound) in self.get(number).iter().take(DIMENSIONS).enumerate() {
+    /// Calls `visit` for every cell that a box overlaps, once; false, and it does not, if there are too many. A box of nobody
+    /// overlaps none.
+    fn for_each_cell(&self, number: u32, visit: &mut dyn FnMut(Cell)) -> bool {
+        let bounds = self.get(number);
+        let dimensions = self.n.min(DIMENSIONS);
+        let (mut first, mut last) = ([0; DIMENSIONS], [0; DIMENSIONS]);
+        for dimension in 0..dimensions {
+            let bound = bounds[dimension];
             let is_narrow = bound.width() * self.scale[dimension] < CELLS_MAX;
             if !is_narrow {
-                return None;
+                return false;
             }
-            let (first, last) = (self.place(dimension, bound.lo), self.place(dimension, bound.hi));
-            cells =
-                cells.iter().flat_map(|&cell| (first..=last).map(move |place| join(cell, place))).collect();
+            (first[dimension], last[dimension]) =
+                (self.place(dimension, bound.lo), self.place(dimension, bound.hi));
+            if first[dimension] > last[dimension] {
+                return true;
+            }
         }
-        cells.sort_unstable();
-        cells.dedup();
-        Some(cells)
+        let mut place = first;
+        loop {
+            visit(place[..dimensions].iter().fold(0, |cell, &place| join(cell, place)));
+            let Some(next) = (0..dimensions).rev().find(|&dimension| place[dimension] < last[dimension])
+            else {
+                return true;
+            };
+            place[next] += 1;
+            place[next + 1..dimensions].copy_from_slice(&first[next + 1..dimensions]);
+        }
     }
 }
 

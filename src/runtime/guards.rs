@@ -6,7 +6,7 @@
 
 use smallvec::SmallVec;
 
-use crate::codegen::program::{Atom, Quantified, Range, Relation, Trigger};
+use crate::codegen::program::{Atom, Near, Quantified, Range, Relation, Trigger};
 use crate::math::Interval;
 use crate::runtime::candidates::Candidates;
 use crate::runtime::definition::{AtomShape, Definition, definitions};
@@ -76,8 +76,9 @@ pub struct AtomState {
     pub slack: f64,
     /// See `Known::settled`.
     pub settled: bool,
-    /// Whether it is certified by rates that are bounded whatever the states of its agents are.
-    pub far: bool,
+    /// Since when it is certified by rates that are bounded whatever the states of its agents are, s: an event before would
+    /// have those who are bounded begin elsewhere. Infinite if it is certified by something else.
+    pub far: f64,
     /// How far ahead to try to sleep, s; 0: as far as the run goes.
     pub stride: f64,
     /// How often not to try to sleep before the next try.
@@ -125,7 +126,7 @@ impl AtomState {
             leap: None,
             slack: 0.0,
             settled: false,
-            far: false,
+            far: f64::INFINITY,
             stride: 0.0,
             skip: 0,
             backoff: 0,
@@ -432,6 +433,14 @@ impl<'p> Guards<'p> {
             (binder, agent)
         };
         (atom, shapes[atom].binders.iter().rev().map(agent).collect())
+    }
+
+    /// The ranges out of which a comparison cannot change, if there are any: it is the whole condition of a pair, and false.
+    pub fn far_where_apart(&self, index: usize) -> Option<&'p [Near]> {
+        let state = &self.atoms[index];
+        let definition = self.definition(state.instance);
+        let is_whole = definition.comparisons.len() == 1 && !state.truth;
+        (is_whole && !definition.near.is_empty()).then_some(definition.near)
     }
 
     /// Whether `other` leaves out an agent that an atom instance binds, or nobody has its seat.

@@ -3,12 +3,13 @@
 //! Such an agent is *cold*: it runs ahead alone, and leaves no segments but where a track is wanted of it ([`Tracks`]). A row
 //! holds where it is, where its last step began, and where the steps began that lead over the present; from there its way
 //! can be followed again, to the bit, by whoever asks where it was ([`Leaps::follow`]). In lanes, an agent that has come far
-//! enough makes room for the next.
+//! enough makes room for the next. Beside a row stand bounds of its states since the window began, by the dense output of its
+//! steps.
 
 use std::cell::RefCell;
 
 use crate::math::lanes::{Level, Work};
-use crate::math::{N_LANES, Numbers, Wide};
+use crate::math::{Interval, N_LANES, Numbers, Wide};
 use crate::runtime::leap::{Covering, LeapRows, Leaps, STATES_MAX};
 use crate::runtime::solve::segment::Segment;
 use crate::runtime::tracks::Tracks;
@@ -27,6 +28,8 @@ pub struct Herd<'p> {
     /// How far each has come, s; infinite for one that is not cold.
     clocks: Vec<f64>,
     rows: Vec<f64>,
+    /// For each place, bounds of the states since the window began, then over the last step.
+    bounds: Vec<Interval>,
     /// The steps in this window of those that something may concern in it.
     pub tracks: Tracks,
     /// Scratch.
@@ -53,8 +56,8 @@ impl<'p> Herd<'p> {
         let n = leaps.tape.n_states;
         let alone = RefCell::new((LeapRows::new(&leaps), Segment::default()));
         let tracks = Tracks::new(n, leaps.order + 1);
-        let (agents, clocks, rows) = Default::default();
-        Self { leaps, inputs, n, agents, clocks, rows, tracks, alone }
+        let (agents, clocks, rows, bounds) = Default::default();
+        Self { leaps, inputs, n, agents, clocks, rows, bounds, tracks, alone }
     }
 
     /// A row: the states; time and states at the begin of the last step; those from which the way is followed; inputs.
@@ -71,6 +74,7 @@ impl<'p> Herd<'p> {
         self.agents.push(agent as u32);
         self.clocks.push(f64::INFINITY);
         self.rows.resize(self.agents.len() * self.width(), 0.0);
+        self.bounds.resize(self.agents.len() * 2 * self.n, Interval::WHOLE);
         self.agents.len() - 1
     }
 
@@ -82,11 +86,20 @@ impl<'p> Herd<'p> {
         self.clocks.swap_remove(place);
         self.rows.copy_within(last * width.., place * width);
         self.rows.truncate(last * width);
+        let width = 2 * self.n;
+        self.bounds.copy_within(last * width.., place * width);
+        self.bounds.truncate(last * width);
         self.agents.get(place).map(|&agent| agent as usize)
     }
 
-    /// Has an agent go on from `(t, x)`.
-    pub fn start(&mut self, place: usize, t: f64, x: &[f64], aux: &[f64]) {
+    /// Has an agent go on from `(t, x)`; `bounds` are those of its states since the window began.
+    pub fn start(
+        &mut self,
+        place: usize,
+        (t, x): (f64, &[f64]),
+        aux: &[f64],
+        bounds: impl Iterator<Item = Interval>,
+    ) {
         let (n, width) = (self.n, self.width());
         self.clocks[place] = t;
         let row = &mut self.rows[place * width..][..width];
@@ -98,6 +111,14 @@ impl<'p> Herd<'p> {
         for (value, &column) in row[3 * n + 2..].iter_mut().zip(&self.inputs) {
             *value = aux[column];
         }
+        let (since, last) = self.bounds[place * 2 * n..][..2 * n].split_at_mut(n);
+        since.iter_mut().zip(bounds).for_each(|(since, bound)| *since = bound);
+        last.copy_from_slice(since);
+    }
+
+    /// Bounds of an agent's states from the begin of the window on to where it has come.
+    pub fn bounds(&self, place: usize) -> &[Interval] {
+        &self.bounds[place * 2 * self.n..][..self.n]
     }
 
     /// Has an agent go no further.
@@ -153,13 +174,21 @@ impl<'p> Herd<'p> {
         self.leaps.tape.fix(input, fixed);
     }
 
-    /// Advances all that have not come as far as `until` until they have, and makes the tracks that are wanted; what is known
-    /// of their ways begins at `from` or before it.
+    /// Advances all that have not come as far as `until` until they have; what is known of their ways begins at `from` or
+    /// before it.
     pub fn advance(&mut self, from: f64, until: f64) -> Advanced {
-        let mut waiting: Vec<usize> =
-            (0..self.clocks.len()).filter(|&place| self.clocks[place] < until).collect();
+        let waiting = (0..self.clocks.len()).filter(|&place| self.clocks[place] < until).collect();
+        self.advance_these(waiting, (from, until))
+    }
+
+    /// Makes the tracks that are wanted: the steps are taken again from where the ways are known, which is `from` or before it.
+    pub fn make_tracks(&mut self, from: f64) {
         let tracked = self.tracks.wanted().iter().map(|&place| place as usize);
-        waiting.extend(tracked.filter(|&place| (until..f64::INFINITY).contains(&self.clocks[place])));
+        let waiting = tracked.filter(|&place| self.clocks[place] < f64::INFINITY).collect();
+        self.advance_these(waiting, (from, from));
+    }
+
+    fn advance_these(&mut self, waiting: Vec<usize>, (from, until): (f64, f64)) -> Advanced {
         let mut advanced = Advanced::default();
         let mut lanes = Lanes::new(&self.leaps);
         let mut waiting = waiting.into_iter();
@@ -194,6 +223,7 @@ impl<'p> Herd<'p> {
         let row = &mut self.rows[place * width..][..width];
         if row[n] <= from {
             row.copy_within(n..2 * n + 1, 2 * n + 1);
+            self.bounds.copy_within(place * 2 * n + n..place * 2 * n + 2 * n, place * 2 * n);
         }
         let is_tracked = self.tracks.wants(place);
         let start = if is_tracked { row[2 * n + 1] } else { self.clocks[place] };
@@ -208,6 +238,8 @@ impl<'p> Herd<'p> {
         for i in 0..n {
             lanes.x[i].0[lane] = row[first + i];
             lanes.last_x[i].0[lane] = row[n + 1 + i];
+            let bound = self.bounds[place * 2 * n + i];
+            (lanes.lows[i].0[lane], lanes.highs[i].0[lane]) = (bound.lo, bound.hi);
         }
         for (wide, &value) in lanes.rows.fixed.iter_mut().zip(&lanes.fixed) {
             wide.0[lane] = value;
@@ -231,7 +263,12 @@ impl<'p> Herd<'p> {
                 }
             }
             let goes_on = good && lanes.t.0[lane] < lanes.target[lane];
-            if goes_on && lanes.taken[lane] < STEPS_MAX {
+            if goes_on && (lanes.taken[lane] < STEPS_MAX || lanes.is_tracked[lane]) {
+                continue;
+            }
+            lanes.place[lane] = NOBODY;
+            lanes.n_boarded -= 1;
+            if lanes.is_tracked[lane] {
                 continue;
             }
             // After a refused step it is where that began, and has come there by none that is known.
@@ -243,12 +280,14 @@ impl<'p> Herd<'p> {
             for i in 0..n {
                 row[i] = x[i].0[lane];
                 row[n + 1 + i] = lanes.last_x[i].0[lane];
+                let [since, last] = [0, n].map(|first| place * 2 * n + first + i);
+                self.bounds[since] = Interval { lo: lanes.lows[i].0[lane], hi: lanes.highs[i].0[lane] };
+                let LeapRows { lows, highs, .. } = &lanes.rows;
+                self.bounds[last] = Interval { lo: lows[i].0[lane], hi: highs[i].0[lane] };
             }
             if !good || goes_on {
                 advanced.refused.push(place);
             }
-            lanes.place[lane] = NOBODY;
-            lanes.n_boarded -= 1;
         }
     }
 
@@ -279,7 +318,12 @@ impl<'p> Herd<'p> {
         for i in 0..n {
             (x[i], last_x[i]) = (lanes.x[i].0[lane], lanes.last_x[i].0[lane]);
         }
-        for _ in 0..STEPS_MAX {
+        let mut since: [Interval; STATES_MAX] = [Interval::WHOLE; STATES_MAX];
+        for (since, (low, high)) in since.iter_mut().zip(lanes.lows.iter().zip(&lanes.highs)) {
+            *since = Interval { lo: low.0[lane], hi: high.0[lane] };
+        }
+        let steps_max = if lanes.is_tracked[lane] { u32::MAX } else { STEPS_MAX };
+        for _ in 0..steps_max {
             if t >= lanes.target[lane] {
                 break;
             }
@@ -294,8 +338,15 @@ impl<'p> Herd<'p> {
                 let (x_end, terms) = (x_new[..n].iter().copied(), rows.terms.iter().copied());
                 self.tracks.push(place, (t, leap.h, leap.end), ratio, x_end, terms);
             }
+            self.leaps.bound(&x[..n], &x_new[..n], rows);
+            for (since, (&lo, &hi)) in since.iter_mut().zip(rows.lows.iter().zip(&rows.highs)) {
+                *since = since.hull(Interval { lo, hi });
+            }
             (last_t, last_x) = (t, x);
             (t, x) = (leap.end, x_new);
+        }
+        if lanes.is_tracked[lane] {
+            return;
         }
         if t < lanes.target[lane] && advanced.refused.last() != Some(&place) {
             advanced.refused.push(place);
@@ -305,6 +356,11 @@ impl<'p> Herd<'p> {
         row[..n].copy_from_slice(&x[..n]);
         row[n] = last_t;
         row[n + 1..2 * n + 1].copy_from_slice(&last_x[..n]);
+        let (bounds, last) = self.bounds[place * 2 * n..][..2 * n].split_at_mut(n);
+        bounds.copy_from_slice(&since[..n]);
+        for (i, last) in last.iter_mut().enumerate() {
+            *last = Interval { lo: rows.lows[i], hi: rows.highs[i] };
+        }
     }
 }
 
@@ -326,6 +382,9 @@ struct Lanes {
     last_t: Wide,
     last_x: Vec<Wide>,
     x_new: Vec<Wide>,
+    /// Bounds of the states since the window began.
+    lows: Vec<Wide>,
+    highs: Vec<Wide>,
     good: Wide,
     rows: LeapRows<Wide>,
     /// Scratch: what does not move, of one agent.
@@ -347,6 +406,8 @@ impl Lanes {
             last_t: zero,
             last_x: vec![zero; n],
             x_new: vec![zero; n],
+            lows: vec![zero; n],
+            highs: vec![zero; n],
             good: zero,
             rows: LeapRows::new(leaps),
             fixed: vec![0.0; leaps.tape.fixed.len()],
@@ -363,8 +424,15 @@ struct Step<'a, 'p> {
 impl Work for Step<'_, '_> {
     #[inline(always)]
     fn work(self) {
-        let Lanes { t, h, x, last_t, last_x, x_new, good, rows, .. } = self.lanes;
+        let Lanes { t, h, x, last_t, last_x, x_new, lows, highs, good, rows, .. } = self.lanes;
         let leap = self.leaps.leap(*t, x, rows, x_new);
+        self.leaps.bound(x, x_new, rows);
+        for (low, &new) in lows.iter_mut().zip(&rows.lows) {
+            *low = low.zip(new, |low, new| if new < low { new } else { low });
+        }
+        for (high, &new) in highs.iter_mut().zip(&rows.highs) {
+            *high = high.zip(new, |high, new| if new > high { new } else { high });
+        }
         *last_t = *t;
         *h = leap.h;
         *t = leap.end;

@@ -1,6 +1,7 @@
 //! Who has to be looked at in a window of time: agents whose guards could change in it are *hot*, and take their steps in
 //! the plain form; all others are cold.
 
+use crate::math::Interval;
 use crate::runtime::engine::{Due, Engine};
 use crate::runtime::leap::Covering;
 use crate::runtime::population::ABSENT;
@@ -11,7 +12,7 @@ const SKIP: u16 = 64;
 /// How many agents are looked at in a window.
 #[derive(Clone, Copy, Debug)]
 pub struct Outlook {
-    /// That take their steps in turn, and could be cold if no guard concerned them.
+    /// That took their steps in turn at the end of the last window, and could have been cold if no guard had concerned them.
     pub n_hot: usize,
     /// Whose steps are kept.
     pub n_tracked: usize,
@@ -21,18 +22,20 @@ impl Engine<'_, '_> {
     /// Divides the agents for the window from the present to `until`, and advances the cold ones.
     pub fn open_window(&mut self, until: f64) -> Outlook {
         self.agents.cold.clear_tracks();
+        let rows = self.hot.iter().map(|&agent| &self.agents.agents[agent]);
+        let n_hot = rows.filter(|row| self.agents.cold.may_be(row.ty, row.mode)).count();
         let doubtful = self.look_ahead(until);
         self.freeze_all();
+        self.advance_cold(until);
+        let doubtful = self.bound_doubts(doubtful, until);
         let mut doubted = Vec::new();
         for due in &doubtful {
             self.add_read(due.number as usize, &mut doubted);
         }
         doubted.into_iter().for_each(|agent| self.agents.cold.want_track(agent));
-        self.advance_cold(until);
+        self.agents.cold.make_tracks(self.present.time);
         self.follow_doubts(doubtful, until);
         self.has_thawed = false;
-        let rows = self.hot.iter().map(|&agent| &self.agents.agents[agent]);
-        let n_hot = rows.filter(|row| self.agents.cold.may_be(row.ty, row.mode)).count();
         Outlook { n_hot, n_tracked: self.agents.cold.n_tracked() }
     }
 
@@ -56,32 +59,35 @@ impl Engine<'_, '_> {
         refused.into_iter().for_each(|agent| self.thaw(agent));
     }
 
-    /// Certifies doubtful comparisons by the tracks of their agents; brings back the agents of those that it does not.
+    /// Certifies doubtful comparisons by bounds of their agents over the window; returns those that it does not.
+    fn bound_doubts(&mut self, mut doubtful: Vec<Due>, until: f64) -> Vec<Due> {
+        doubtful.retain(|due| !self.foresee_by_bounds(due.number as usize, until));
+        doubtful
+    }
+
+    /// Certifies doubtful comparisons by the tracks of their agents, as far as they go.
     fn follow_doubts(&mut self, doubtful: Vec<Due>, until: f64) {
-        let mut needed = Vec::new();
         for due in doubtful {
             let index = due.number as usize;
-            if !self.foresee(index, until) {
-                // Nor will it sleep by the boxes of its agents' groups.
-                self.guards.atoms[index].skip = SKIP;
-                self.add_read(index, &mut needed);
+            if self.is_bounded(index) {
+                if self.foresee(index, until) {
+                    continue;
+                }
+            } else {
                 self.queues.uncertified.push(due);
             }
+            // Nor will it sleep by the boxes of its agents' groups.
+            self.guards.atoms[index].skip = SKIP;
         }
-        needed.into_iter().for_each(|agent| self.thaw(agent));
     }
 
     /// Has comparisons sleep beyond `until`; returns those that do not.
     fn look_ahead(&mut self, until: f64) -> Vec<Due> {
-        let mut doubtful = Vec::new();
-        while let Some(due) = self.queues.uncertified.peek().copied().filter(|due| due.time < until) {
-            self.queues.uncertified.pop();
-            let index = due.number as usize;
-            if self.guards.atoms[index].version == due.version && !self.sleep_beyond(index, until) {
-                doubtful.push(due);
-            }
-        }
-        doubtful
+        let Self { queues, guards, .. } = self;
+        let is_valid = |due: &Due| guards.atoms[due.number as usize].version == due.version;
+        let mut due = queues.take_uncertified(until, is_valid);
+        due.retain(|due| !self.sleep_beyond(due.number as usize, until));
+        due
     }
 
     /// The agents that comparisons read which will change, rising.
@@ -118,7 +124,12 @@ impl Engine<'_, '_> {
         {
             return false;
         }
-        self.agents.cold.freeze(agent, row.ty, row.mode, (group.clock, &row.states), &row.aux);
+        let (clock, now, segment) = (group.clock, self.present.time, &row.segment);
+        let bounds = row.states.iter().enumerate().map(|(state, &x)| {
+            let here = Interval { lo: x, hi: x };
+            if clock <= now { here } else { here.hull(segment.range(state, now.max(segment.start), clock)) }
+        });
+        self.agents.cold.freeze(agent, (row.ty, row.mode), (clock, &row.states), &row.aux, bounds);
         group.clock = f64::INFINITY;
         group.integration.restart();
         true
@@ -126,10 +137,14 @@ impl Engine<'_, '_> {
 
     /// Brings a cold agent back: its last segment covers the present again, and it takes its steps in turn.
     pub fn thaw(&mut self, agent: usize) {
+        self.thaw_at(agent, self.present.time);
+    }
+
+    /// The same for what happens from `time` on; nothing does between the present and that.
+    pub fn thaw_at(&mut self, agent: usize, time: f64) {
         if !self.agents.cold.is_cold(agent) {
             return;
         }
-        let time = self.present.time;
         let cold = &mut self.agents.cold;
         let row = &mut self.agents.agents[agent];
         let clock = if cold.knows(agent, time) {

@@ -7,7 +7,7 @@ use crate::codegen::series::SeriesTape;
 use crate::math::{Numbers, Wide};
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::segment::{N_MAX, Segment};
-use crate::runtime::solve::series_step::{errors, reach, sum_up};
+use crate::runtime::solve::series_step::{bounds, errors, reach, sum_up};
 
 /// The series of a flow, with all that a step depends on besides time and states.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +34,10 @@ pub struct LeapRows<T> {
     ends: Vec<T>,
     /// The error of each state in the last step.
     pub errors: Vec<T>,
+    /// Bounds of each state over the last step: [`Leaps::bound`].
+    pub lows: Vec<T>,
+    /// See `lows`.
+    pub highs: Vec<T>,
 }
 
 impl<T: Numbers> LeapRows<T> {
@@ -47,6 +51,8 @@ impl<T: Numbers> LeapRows<T> {
             terms: vec![zero; leaps.tape.n_states * (leaps.order + 1)],
             ends: vec![zero; leaps.tape.n_states],
             errors: vec![zero; leaps.tape.n_states],
+            lows: vec![zero; leaps.tape.n_states],
+            highs: vec![zero; leaps.tape.n_states],
         }
     }
 }
@@ -88,6 +94,15 @@ impl Leaps<'_> {
             good = good.zip(accepted, |good, accepted| good * accepted);
         }
         Leap { h, end, good }
+    }
+}
+
+impl Leaps<'_> {
+    /// Bounds the states over the step from `x` to `x_new` that `rows` holds.
+    #[inline(always)]
+    pub fn bound<T: Numbers>(&self, x: &[T], x_new: &[T], rows: &mut LeapRows<T>) {
+        let LeapRows { terms, lows, highs, .. } = rows;
+        bounds(terms, self.order, (x, x_new), (lows, highs));
     }
 }
 

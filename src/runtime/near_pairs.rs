@@ -112,7 +112,8 @@ impl<'p> Engine<'p, '_> {
         field.grid.for_each_pair(&mut |a, b| wanted.extend(field.pairs(&self.agents, a, b)));
         wanted.extend(field.selves(&self.agents).iter().map(|&agent| [agent as u32; 2]));
         wanted.sort_unstable();
-        let before = std::mem::take(&mut field.listed);
+        let mut before = std::mem::take(&mut field.listed);
+        before.sort_unstable();
         let mut before = before.into_iter().peekable();
         for agents in wanted {
             while let Some(old) = before.next_if(|old| old.agents < agents) {
@@ -126,7 +127,6 @@ impl<'p> Engine<'p, '_> {
         for old in before {
             self.let_go(old, field);
         }
-        field.listed.sort_unstable();
         Ok(())
     }
 
@@ -180,9 +180,9 @@ impl<'p> Engine<'p, '_> {
     /// Where an agent can get to up to `until`, in the states that are compared of it, with half of the range around.
     fn reach(&mut self, agent: usize, near: &[Near], side: usize, until: f64) -> SmallVec<[Interval; 4]> {
         let mut states = SmallVec::new();
-        let now = self.present.time;
+        let span = (self.present.time, until);
         let (agents, groups) = (&self.agents, &self.groups.groups);
-        self.reaches.states(agents, groups, &mut self.enclosures, agent, (now, now, until), &mut states);
+        self.reaches.states(agents, groups, &mut self.enclosures, agent, span, &mut states);
         let around = |near: &Near| {
             let bound = states[if side == 0 { near.own } else { near.other }];
             let half = 0.5 * near.within * (1.0 + 1e-12);
@@ -246,9 +246,6 @@ impl<'p> Engine<'p, '_> {
                 let new = self.enter(field, agents)?;
                 self.introduce(new, born, armed)?;
             }
-        }
-        if !moved.is_empty() {
-            field.listed.sort_unstable();
         }
         Ok(())
     }

@@ -42,7 +42,7 @@ pub struct Field {
     pub grid: Grid,
     /// Whether an agent is paired with itself.
     pub with_self: bool,
-    /// Pairs that have instances, with those; of a quantifier with the instance of the guard.
+    /// Pairs that have instances, with those; of a quantifier with the instance of the guard. In no order.
     pub listed: Vec<Listed>,
 }
 

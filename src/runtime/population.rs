@@ -236,22 +236,6 @@ impl<'p> Agents<'p> {
         followers
     }
 
-    /// A time not after `now`, the present, from which on an agent is not known to have been written, and its states there;
-    /// `clock` is that of its group. Where it has come to since may yet be cut away.
-    pub fn anchor(&self, agent: usize, clock: f64, now: f64) -> (f64, SmallVec<[f64; 8]>) {
-        let row = &self.agents[agent];
-        if self.cold.is_cold(agent) {
-            if self.cold.known_from(agent) <= now {
-                return self.cold.known(agent);
-            }
-        } else if clock <= now {
-            return (clock, row.states.as_slice().into());
-        }
-        let mut states = SmallVec::from_elem(0.0, row.states.len());
-        row.segment.states(row.segment.start, &mut states);
-        (row.segment.start, states)
-    }
-
     /// What is read of an agent that is absent.
     pub fn absent_row(&self) -> &[f64] {
         &self.absent

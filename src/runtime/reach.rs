@@ -2,10 +2,9 @@
 //!
 //! Rates that are bounded whatever the states are (a speed times a cosine, a saturated input) bound the way of a state
 //! for as long as the agent follows the same flow with the same parameters; a state whose rate is bounded by those has
-//! bounds too. These are kept until the agent's group changes its version. The way begins at an anchor that is not beyond
-//! the present ([`Agents::anchor`]): what an agent has run ahead may be cut away by an event, and a bound that rests on where
-//! it would have come to would not hold then. Other states have a box by Picard's operator
-//! ([`Enclosures`]), or none.
+//! bounds too. These are kept until the agent's group changes its version. The way begins at an anchor, where the agent
+//! has come to ([`anchor`]): if that is beyond the present, an event may cut it away, and the box with it. Other states
+//! have a box by Picard's operator ([`Enclosures`]), or none.
 
 use smallvec::SmallVec;
 
@@ -92,14 +91,14 @@ impl Reaches {
 
     /// The box of an agent's states over [from, to], one place of `out` each; WHOLE where there is no bound.
     ///
-    /// All of [from, to] lies at or after `now`, the present; where the agent's clock is does not matter.
+    /// All of [from, to] lies at or after the present; where the agent's clock is does not matter.
     pub fn states(
         &mut self,
         agents: &Agents<'_>,
         groups: &[Group],
         enclosures: &mut Enclosures,
         agent: usize,
-        (now, from, to): (f64, f64, f64),
+        (from, to): (f64, f64),
         out: &mut SmallVec<[Interval; 8]>,
     ) {
         out.clear();
@@ -111,8 +110,8 @@ impl Reaches {
         let group = &groups[number];
         let first = self.kept[agent].first as usize;
         if is_alone(group) && to <= self.time_end {
-            let (t, states) = agents.anchor(agent, group.clock, now);
-            self.refresh(agents, group, agent, (t, &states));
+            let (t, states) = anchor(agents, groups, agent);
+            self.refresh(agents, group, agent, (t, states));
             let span = Interval { lo: from - t, hi: to - t };
             for (&x, &rate) in states.iter().zip(&self.rates[first..first + n]) {
                 out.push(if rate.is_whole() { rate } else { self.padded(x, span.mul(rate)) });
@@ -214,6 +213,15 @@ impl Reaches {
     /// x + way, with room for what the integration may be off by.
     fn padded(&self, x: f64, way: Interval) -> Interval {
         self.accuracy.padded(Interval { lo: x, hi: x }.add(way))
+    }
+}
+
+/// How far an agent has come, and its states there. If that is beyond the present, an event may yet cut it away.
+#[inline]
+pub fn anchor<'a>(agents: &'a Agents<'_>, groups: &[Group], agent: usize) -> (f64, &'a [f64]) {
+    match agents.cold.now(agent) {
+        Some(now) => now,
+        None => (groups[agents.agents[agent].group].clock, &agents.agents[agent].states),
     }
 }
 

@@ -13,6 +13,8 @@ use crate::runtime::observe::End;
 
 /// So many pairs are new in a list, for each agent, that about as much work goes into them as into making the list.
 const NEW_WANTED: f64 = 0.3;
+/// So many agents take their steps in turn: to look ahead costs more.
+const FEW: usize = 2;
 /// The first list is for this share of the run.
 const FIRST_LIST: f64 = 1.0 / 32.0;
 /// The first window is this share of the run.
@@ -22,7 +24,7 @@ const SHORTEST: f64 = 1e-6;
 /// The most by which the time of a list, or of a window, grows or shrinks from one to the next.
 const GROW: f64 = 2.0;
 /// The share of agents that are hot at which a window is long enough.
-const HOT_WANTED: f64 = 0.02;
+const HOT_WANTED: f64 = 0.01;
 /// The share of agents whose steps are kept at which it is.
 const TRACKED_WANTED: f64 = 0.2;
 /// A window in which agents take more steps than this is long enough, too.
@@ -70,9 +72,11 @@ impl Engine<'_, '_> {
         }
     }
 
-    /// Herds for those who may be cold; none if every step is recorded.
+    /// Herds for those who may be cold; none if every step is recorded, or for very few.
     fn make_herds(&mut self) {
-        if self.recorder.wants_steps() || !self.by_series {
+        let stay_few =
+            self.agents.n_living() <= FEW && self.program.action_lists().all(|list| list.births().is_empty());
+        if self.recorder.wants_steps() || !self.by_series || stay_few {
             return;
         }
         let accuracy = self.stepper.accuracy;

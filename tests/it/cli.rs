@@ -102,7 +102,7 @@ fn outputs_of_the_command_line_go_where_it_says() {
     let stats = json(&read(&folder, "stats.json"));
     assert_eq!(stats["model"], "ball.hy");
     assert_eq!(stats["algorithm"], "masim");
-    assert_eq!(stats["backend"], "jit");
+    assert_eq!(stats["backend"], "auto");
     assert_eq!(stats["tolerance"], 1e-8);
     assert_eq!(stats["until"], 1.0);
     assert_eq!(stats["agents"], 3);

@@ -66,6 +66,27 @@ fn kernels_can_be_shared_by_threads() {
 }
 
 #[test]
+fn machine_code_is_made_when_it_pays_and_changes_no_bit() {
+    let [auto, jit] = [Backend::Auto, Backend::Jit].map(|backend| compile(bumper(), backend).unwrap());
+    assert_eq!(auto.machine_code(), (0, 0), "nothing is compiled for a few evaluations");
+    let mut n_interpreted = 0;
+    while !auto.kernels[0].is_compiled() {
+        let th = 0.001 * f64::from(n_interpreted);
+        let view = AgentView { states: &[0.0, 0.0, th], rates: &[], accelerations: &[], aux: &[1.0; 7] };
+        let [ours, theirs] = [&auto, &jit].map(|program| {
+            let mut out = [0.0; 3];
+            program.kernels[0].eval(&[view], th, &mut out);
+            out.map(f64::to_bits)
+        });
+        assert_eq!(ours, theirs, "at {th}");
+        n_interpreted += 1;
+        assert!(n_interpreted < 1_000_000, "it never pays");
+    }
+    assert!(n_interpreted > 1000, "{n_interpreted}");
+    assert_eq!(auto.machine_code(), jit.machine_code());
+}
+
+#[test]
 fn a_function_that_is_too_long_is_interpreted() {
     let mut graph = Graph::default();
     let x = graph.intern(Node::State { slot: 0, column: 0 });

@@ -78,6 +78,36 @@ fn cars_that_are_turned_while_they_have_run_ahead_are_met_in_time() {
     }
 }
 
+/// Cars of very different speeds, some of which jump or change their speed while others run ahead beside them.
+#[test]
+fn cars_that_jump_and_change_their_speed_in_a_dense_arena() {
+    for (k, own) in [
+        "kick: every 0.7 + 0.3*hash(i, 9) { v := 0.2 + mod(3.7*v + 0.31, 1.3) }",
+        "jump: every 2.1 + hash(i, 5) { x := -x + 0.7 }",
+        "rest: every 1.3 + hash(i, 6) { w := 0.3 + mod(1.7*w, 5) }",
+    ]
+    .iter()
+    .enumerate()
+    {
+        let text = format!(
+            "{HASH}
+             agent Car(i: int) {{
+               state x = 4*mod(i, 8) - 14, y = 4*floor(i/8) - 14, th = 6.28*hash(i, {k})
+               discrete v = 0.2*10^hash(i, 1), w = 0.5*40^hash(i, 2)
+               flow {{ x' = v*cos(th)  y' = v*sin(th)  th' = 0.5*w*sin(w*time + i) }}
+               {own}
+               when abs(x) >= 16 or abs(y) >= 16 {{ th := atan2(-y, -x) }} }}
+             interaction Bump(a: Car, b: Car) {{
+               pair: when (a.x - b.x)^2 + (a.y - b.y)^2 <= 1 {{
+                 a.th := atan2(a.y - b.y, a.x - b.x)  b.th := atan2(b.y - a.y, b.x - a.x) }} }}
+             system {{ cars = Car[64](i = index) }}  run {{ until 15 }}"
+        );
+        let [fast, plain] = [Form::Fast, Form::Plain].map(|form| by(&text, form, 1e-10));
+        assert!(plain.events.len() > 100, "{}", plain.events.len());
+        assert_eq!(difference(&fast, &plain, f64::INFINITY), None);
+    }
+}
+
 #[test]
 fn a_jump_beside_a_cold_agent_fires_at_once() {
     let both = alike(
