@@ -73,8 +73,8 @@ fn link(system: System, tapes: Vec<Tape>, code: Code, cost: Cost) -> Program {
     }
     let series = series(&system, |_, _, found| found.ok());
     let kernels = tapes.into_iter().zip(code.kernels).map(|(tape, code)| Kernel::new(tape, code)).collect();
-    let System { graph, functions, types, interactions, population, run } = system;
-    Program { graph, functions, types, interactions, population, run, kernels, steps, series, cost }
+    let System { graph, functions, types, interactions, population, run, watch } = system;
+    Program { graph, functions, types, interactions, population, run, watch, kernels, steps, series, cost }
 }
 
 /// What is made of the series of each mode's flow, or of why there is none: for each type, for each mode.

@@ -72,9 +72,10 @@ impl Engine<'_, '_> {
         }
     }
 
-    /// Herds for those who may be cold; none if every step is recorded.
+    /// Herds for those who may be cold; none if every step is recorded or watched.
     fn make_herds(&mut self) {
-        if self.recorder.wants_steps() || !self.by_series {
+        let is_watched = !self.program.properties().is_empty();
+        if self.recorder.wants_steps() || is_watched || !self.by_series {
             return;
         }
         let accuracy = self.stepper.accuracy;
