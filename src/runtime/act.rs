@@ -77,6 +77,8 @@ pub struct Written {
     pub born: Vec<usize>,
     /// Types of agents that have been removed.
     pub died: Vec<usize>,
+    /// Guard instances that looked at an agent that has been removed, as one that was near.
+    pub bereft: Vec<u32>,
     /// Agents whose links lead somewhere else, and those who have lost a member of their group.
     pub relinked: Vec<usize>,
 }

@@ -42,7 +42,7 @@ impl<'p> Engine<'p, '_> {
         state.entry = time;
         state.periods = 0;
         self.draw_hazard(instance);
-        for index in self.guards.atom_range(instance) {
+        for index in self.guards.atoms_of(instance) {
             self.guards.atoms[index].slack = 0.0;
             if !self.guards.atoms[index].left_out && !self.settle_far(index) {
                 self.settle(index, rule, &Written::default());
@@ -61,7 +61,7 @@ impl<'p> Engine<'p, '_> {
         state.active = false;
         state.armed = false;
         state.arming += 1;
-        for index in self.guards.atom_range(instance) {
+        for index in self.guards.atoms_of(instance) {
             self.guards.atoms[index].version += 1;
         }
     }
@@ -183,7 +183,7 @@ impl<'p> Engine<'p, '_> {
 
     /// Settles the comparisons of aggregates of an instance, some of which have other members now.
     pub fn settle_folds(&mut self, instance: u32) {
-        for index in self.guards.atom_range(instance) {
+        for index in self.guards.atoms_of(instance) {
             let (atom, slots) = self.guards.atom_slots(&self.agents, index);
             if !atom.folds.is_empty() {
                 let before = self.guards.atoms[index];
@@ -315,6 +315,7 @@ impl<'p> Engine<'p, '_> {
         for &ty in &written.died {
             reading.extend_from_slice(&self.guards.over_type[ty]);
         }
+        reading.extend_from_slice(&written.bereft);
         reading.sort_unstable();
         reading.dedup();
         let mut reach: Vec<usize> = concerned.iter().flat_map(|&agent| self.agents.readers(agent)).collect();
@@ -354,7 +355,7 @@ impl<'p> Engine<'p, '_> {
         let definition = self.guards.definition(instance);
         let is_own = self.guards.roots(instance).iter().any(|root| reach.binary_search(root).is_ok());
         if is_own || !definition.folds.is_empty() || definition.quantified.is_empty() {
-            return self.guards.atom_range(instance).collect();
+            return self.guards.atoms_of(instance).collect();
         }
         let bound = reach.iter().filter(|&&agent| definition.binds(self.agents.agents[agent].ty));
         let mut atoms: Vec<usize> =
@@ -397,6 +398,7 @@ impl<'p> Engine<'p, '_> {
         for &agent in agents {
             for reader in self.agents.readers(agent) {
                 instances.extend_from_slice(&self.guards.of_agent[reader]);
+                instances.extend_from_slice(self.guards.candidates.looking_at(reader));
             }
             instances.extend_from_slice(&self.guards.over_type[self.agents.agents[agent].ty]);
         }

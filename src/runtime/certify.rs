@@ -212,7 +212,7 @@ impl Engine<'_, '_> {
             if !self.guards.instances[instance as usize].active {
                 continue;
             }
-            for index in self.guards.atom_range(instance) {
+            for index in self.guards.atoms_of(instance) {
                 let state = &self.guards.atoms[index];
                 if state.certified > time && state.flip == f64::INFINITY {
                     self.recertify(index, time);

@@ -15,7 +15,7 @@ const TOLD_MAX: usize = 6;
 /// The comparisons of an instance that tell most: those that change at this instant, then those that hold, then the rest.
 pub fn telling(guards: &Guards<'_>, instance: u32) -> Vec<usize> {
     let mut all: Vec<usize> =
-        guards.atom_range(instance).filter(|&index| !guards.atoms[index].left_out).collect();
+        guards.atoms_of(instance).filter(|&index| !guards.atoms[index].left_out).collect();
     if all.len() > TOLD_MAX {
         let rank = |&index: &usize| {
             let state = &guards.atoms[index];

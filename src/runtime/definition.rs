@@ -10,12 +10,12 @@ use crate::codegen::program::{
 use crate::runtime::fold;
 use crate::runtime::population::Agents;
 
-/// Which pairs of an interaction have instances.
+/// Which pairs of an interaction have instances, and which agents a quantifier looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Listing {
     /// All.
     All,
-    /// Those that are near enough for their condition to become true soon, where the compiler has found a range.
+    /// Those that are near enough for their condition to change soon, where the compiler has found a range.
     Near,
 }
 
@@ -74,11 +74,18 @@ pub struct Definition<'p> {
     pub n_rising: usize,
     /// The types that quantifiers and aggregates range over, and those reached from bound agents by links.
     pub quantified: Vec<usize>,
+    /// Its quantifiers, if these look at candidates only that are near enough; none: they look at everybody.
+    pub nearby: Vec<Nearby<'p>>,
     /// Of an interaction whose pairs are listed when they are near: how near they are where the condition holds.
     pub near: &'p [Near],
 }
 
 impl Definition<'_> {
+    /// The types all of whose agents it looks at.
+    pub fn looked_over(&self) -> &[usize] {
+        if self.nearby.is_empty() { &self.quantified } else { &[] }
+    }
+
     /// What makes it fire; none for a claim.
     pub fn trigger(&self) -> Option<&Trigger> {
         self.origin.transition().map(|transition| &transition.trigger)
@@ -91,6 +98,19 @@ impl Definition<'_> {
     }
 }
 
+/// A quantifier that looks at candidates only that are near enough for its body to matter.
+#[derive(Clone, Debug)]
+pub struct Nearby<'p> {
+    /// What it binds.
+    pub range: Range,
+    /// How near they are.
+    pub near: &'p [Near],
+    /// If its body is one comparison: what that is for those that are not candidates.
+    pub beyond: Option<bool>,
+    /// The comparisons below it, rising.
+    pub atoms: Vec<usize>,
+}
+
 /// Where the instances of an atom lie, and what binds them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AtomShape {
@@ -98,10 +118,21 @@ pub struct AtomShape {
     pub first: usize,
     /// The quantifiers and aggregates around it, outermost first.
     pub binders: Vec<Range>,
+    /// The number of the quantifier by whose candidates it has instances, and its place among those of a candidate; none:
+    /// by the seats of what binds it.
+    pub nearby: Option<(usize, usize)>,
 }
 
 /// All definitions of a program.
 pub fn definitions<'p>(agents: &Agents<'p>, listing: Listing) -> Vec<Definition<'p>> {
+    let mut definitions = all_definitions(agents, listing);
+    if listing == Listing::Near {
+        definitions.iter_mut().for_each(|definition| definition.find_nearby(agents));
+    }
+    definitions
+}
+
+fn all_definitions<'p>(agents: &Agents<'p>, listing: Listing) -> Vec<Definition<'p>> {
     let program = agents.program;
     let mut definitions = Vec::new();
     for (ty, system) in program.types.iter().enumerate() {
@@ -196,8 +227,8 @@ fn define<'p>(
         }
     }
     let comparisons = binders.comparisons;
-    let (atoms, n_atoms) = lay_out(agents, binders.atoms);
-    let (rising, n_rising) = lay_out(agents, binders.rising);
+    let (atoms, n_atoms) = shapes(agents, binders.atoms);
+    let (rising, n_rising) = shapes(agents, binders.rising);
     Definition {
         origin,
         ty,
@@ -212,34 +243,102 @@ fn define<'p>(
         rising,
         n_rising,
         quantified,
+        nearby: Vec::new(),
         near: &[],
     }
 }
 
-/// Lays out lists of binders for the seats that there are; and how many places they take.
-fn lay_out(agents: &Agents<'_>, lists: Vec<Vec<Range>>) -> (Vec<AtomShape>, usize) {
-    let mut first = 0;
-    let mut shapes = Vec::new();
-    for binders in lists {
-        let n: usize = binders.iter().map(|binder| agents.seats[binder.ty].len()).product();
-        shapes.push(AtomShape { first, binders });
-        first += n;
+impl<'p> Definition<'p> {
+    /// Has its quantifiers look at candidates only, if each of them has a range, and nothing is remembered of an agent that is
+    /// not one.
+    fn find_nearby(&mut self, agents: &Agents<'_>) {
+        let Some(guard) = self.guard else { return };
+        let mut found = Vec::new();
+        if matches!(self.origin, Origin::Pair(_) | Origin::Link(_))
+            || !self.folds.is_empty()
+            || self.n_rising > 0
+            || !ranged(&guard.condition, &mut found)
+        {
+            return;
+        }
+        for (quantified, beyond) in found {
+            let Quantified { slot, ty, other, .. } = *quantified;
+            let beyond = matches!(*quantified.body, Condition::Atom(_)).then_some(beyond);
+            let is_bound = |shape: &AtomShape| shape.binders.iter().any(|binder| binder.slot == slot);
+            let atoms: Vec<usize> = (0..self.atoms.len()).filter(|&k| is_bound(&self.atoms[k])).collect();
+            if atoms.iter().any(|&atom| self.comparisons[atom].relation == Relation::Crossing) {
+                self.nearby.clear();
+                return;
+            }
+            let range = Range { slot, ty, other };
+            self.nearby.push(Nearby { range, near: &quantified.near, beyond, atoms });
+        }
+        for (number, nearby) in self.nearby.iter().enumerate() {
+            for (place, &atom) in nearby.atoms.iter().enumerate() {
+                self.atoms[atom].nearby = Some((number, place));
+            }
+        }
+        self.lay_out(agents);
     }
-    (shapes, first)
+}
+
+/// Finds the quantifiers of a condition, each with what its body is out of its range. False if one has none, or if they
+/// stand in one another.
+fn ranged<'p>(condition: &'p Condition, found: &mut Vec<(&'p Quantified, bool)>) -> bool {
+    match condition {
+        Condition::Constant(_) | Condition::Discrete(_) | Condition::Atom(_) => true,
+        Condition::And(all) | Condition::Or(all) => all.iter().all(|condition| ranged(condition, found)),
+        Condition::Exists(quantified) | Condition::Forall(quantified) => {
+            found.push((quantified, matches!(condition, Condition::Forall(_))));
+            !quantified.near.is_empty() && !quantifies(&quantified.body)
+        }
+        Condition::Rising(..) => false,
+    }
+}
+
+/// Shapes of lists of binders, laid out, and how many places they take.
+fn shapes(agents: &Agents<'_>, lists: Vec<Vec<Range>>) -> (Vec<AtomShape>, usize) {
+    let mut shapes: Vec<AtomShape> =
+        lists.into_iter().map(|binders| AtomShape { first: 0, binders, nearby: None }).collect();
+    let n = lay_out(agents, &mut shapes);
+    (shapes, n)
+}
+
+/// Lays out shapes for the seats that there are; returns how many places they take.
+fn lay_out(agents: &Agents<'_>, shapes: &mut [AtomShape]) -> usize {
+    let mut next = 0;
+    for shape in shapes {
+        shape.first = next;
+        next += shape.n_seats(|ty| agents.seats[ty].len());
+    }
+    next
+}
+
+impl AtomShape {
+    /// How many places it takes in an instance, if types have so many seats.
+    pub fn n_seats(&self, seats: impl Fn(usize) -> usize) -> usize {
+        match self.nearby {
+            Some(_) => 0,
+            None => self.binders.iter().map(|binder| seats(binder.ty)).product(),
+        }
+    }
 }
 
 impl Definition<'_> {
     /// Lays its comparisons out anew, for the seats that there are now.
     pub fn lay_out(&mut self, agents: &Agents<'_>) {
-        let binders = |shapes: &mut Vec<AtomShape>| shapes.drain(..).map(|shape| shape.binders).collect();
-        let (atoms, rising) = (binders(&mut self.atoms), binders(&mut self.rising));
-        (self.atoms, self.n_atoms) = lay_out(agents, atoms);
-        (self.rising, self.n_rising) = lay_out(agents, rising);
+        self.n_atoms = lay_out(agents, &mut self.atoms);
+        self.n_rising = lay_out(agents, &mut self.rising);
     }
 
     /// Whether comparisons of it are bound to agents of a type.
     pub fn binds(&self, ty: usize) -> bool {
         self.atoms.iter().chain(&self.rising).any(|shape| shape.binders.iter().any(|binder| binder.ty == ty))
+    }
+
+    /// Whether its quantifiers look at everybody of a type.
+    pub fn binds_all(&self, ty: usize) -> bool {
+        self.nearby.is_empty() && self.binds(ty)
     }
 }
 

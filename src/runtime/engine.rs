@@ -77,6 +77,7 @@ impl Queues {
         for queue in [&mut self.uncertified, &mut self.flips] {
             let mut all = std::mem::take(queue).into_vec();
             all.iter_mut().for_each(|due| due.number = moved[due.number as usize]);
+            all.retain(|due| due.number != u32::MAX);
             *queue = all.into();
         }
     }

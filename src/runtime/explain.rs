@@ -85,7 +85,7 @@ impl Engine<'_, '_> {
                 return (Cause::Message { sender }, Before::Nothing);
             }
         }
-        let roots = self.guards.atom_range(instance).map(|index| &self.guards.atoms[index]);
+        let roots = self.guards.atoms_of(instance).map(|index| &self.guards.atoms[index]);
         let near = roots.filter(|atom| atom.rooted).map(|atom| atom.near).min_by(f64::total_cmp);
         if let Some(near) = near {
             return (Cause::Flow, Before::Time(near.min(time)));

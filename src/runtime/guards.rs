@@ -8,9 +8,13 @@ use smallvec::SmallVec;
 
 use crate::codegen::program::{Atom, ClaimKind, ClaimSystem, Quantified, Range, Relation, Trigger};
 use crate::math::Interval;
+use crate::runtime::candidates::Candidates;
 use crate::runtime::definition::{AtomShape, Definition, definitions};
 pub use crate::runtime::definition::{Listing, Origin};
 use crate::runtime::population::{ABSENT, Agents, Slots};
+
+/// Numbers of atom instances.
+pub type AtomNumbers = std::iter::Flatten<smallvec::IntoIter<[std::ops::Range<usize>; 1]>>;
 
 /// An instance of a definition.
 #[derive(Clone, Debug)]
@@ -23,6 +27,8 @@ pub struct Instance {
     pub atoms: u32,
     /// Its first `rising` flag.
     pub rising: u32,
+    /// Its first list of candidates.
+    pub lists: u32,
     /// Whether the mode it belongs to is active.
     pub active: bool,
     /// Rule 2.
@@ -44,6 +50,8 @@ pub struct Instance {
 pub struct AtomState {
     /// The instance it belongs to.
     pub instance: u32,
+    /// If it is of a candidate of a quantifier: its number in the definition, and who that is.
+    pub candidate: Option<(u32, u32)>,
     /// Its truth just after `certified`; for `crossing` whether g is on the negative side.
     pub truth: bool,
     /// Changes its truth at this instant and is closed or a crossing, so that it is true in it.
@@ -104,6 +112,7 @@ impl AtomState {
     pub fn new(instance: u32) -> Self {
         Self {
             instance,
+            candidate: None,
             truth: false,
             touched: false,
             left_out: false,
@@ -139,8 +148,10 @@ pub struct Guards<'p> {
     pub of_agent: Vec<Vec<u32>>,
     /// For each agent, its instances that wait for messages.
     pub hearing: Vec<Vec<u32>>,
-    /// For each type, the instances with a quantifier that may read any agent of it.
+    /// For each type, the instances with a quantifier that may read any agent of it; not those that look at candidates only.
     pub over_type: Vec<Vec<u32>>,
+    /// Whom quantifiers look at that have a range.
+    pub candidates: Candidates,
     /// How many instances range over more than one agent (pairs, and bindings of quantifiers), those listed anew included.
     pub n_pairs: u64,
     /// For each definition, instances that nobody has any more, to be used again.
@@ -173,6 +184,7 @@ impl<'p> Guards<'p> {
             of_agent: vec![Vec::new(); agents.len()],
             hearing: vec![Vec::new(); agents.len()],
             over_type: vec![Vec::new(); agents.of_type.len()],
+            candidates: Candidates::new(agents.len()),
             n_pairs: 0,
             free: vec![Vec::new(); definitions.len()],
             retired: Vec::new(),
@@ -198,6 +210,7 @@ impl<'p> Guards<'p> {
             roots,
             atoms: self.atoms.len() as u32,
             rising: self.rising.len() as u32,
+            lists: self.candidates.add_lists(definition.nearby.len()),
             active: false,
             armed: false,
             aged: false,
@@ -218,7 +231,7 @@ impl<'p> Guards<'p> {
         } else if !definition.quantified.is_empty() {
             self.n_pairs += definition.n_atoms as u64;
         }
-        for &ty in &definition.quantified {
+        for &ty in definition.looked_over() {
             self.over_type[ty].push(instance);
         }
         instance
@@ -241,11 +254,11 @@ impl<'p> Guards<'p> {
             self.hearing[roots[0] as usize].push(instance);
         }
         self.n_pairs += 1;
-        for index in self.atom_range(instance) {
+        for index in self.atoms_of(instance) {
             let state = &mut self.atoms[index];
             *state = AtomState { version: state.version, ..AtomState::new(instance) };
         }
-        for &ty in &self.definitions[number].quantified {
+        for &ty in self.definitions[number].looked_over() {
             self.over_type[ty].push(instance);
         }
         self.leave_out(agents, instance);
@@ -259,7 +272,7 @@ impl<'p> Guards<'p> {
         state.active = false;
         state.armed = false;
         state.arming += 1;
-        for index in self.atom_range(instance) {
+        for index in self.atoms_of(instance) {
             self.atoms[index].version += 1;
         }
         for root in self.roots(instance) {
@@ -267,14 +280,16 @@ impl<'p> Guards<'p> {
             self.hearing[root].retain(|&other| other != instance);
         }
         let number = self.instances[instance as usize].definition as usize;
-        for &ty in &self.definitions[number].quantified {
+        for &ty in self.definitions[number].looked_over() {
             self.over_type[ty].retain(|&other| other != instance);
         }
+        self.dismiss_all(instance);
         self.retired.push(instance);
     }
 
     /// Nothing refers any more to the instances that have been retired.
     pub fn free_retired(&mut self) {
+        self.candidates.free_retired();
         for instance in std::mem::take(&mut self.retired) {
             self.free[self.instances[instance as usize].definition as usize].push(instance);
         }
@@ -293,7 +308,7 @@ impl<'p> Guards<'p> {
     pub fn spare(&mut self, agents: &Agents<'_>, agent: usize, link: usize) -> Vec<usize> {
         let mut read = Vec::new();
         for instance in self.of_link(agent, link) {
-            for index in self.atom_range(instance) {
+            for index in self.atoms_of(instance) {
                 let left_out = self.leaves_out(agents, index);
                 if left_out != self.atoms[index].left_out {
                     let version = self.atoms[index].version + 1;
@@ -305,6 +320,14 @@ impl<'p> Guards<'p> {
             }
         }
         read
+    }
+
+    /// The instance of a definition for an agent; of interactions one of several.
+    pub fn instance_of(&self, number: usize, agent: usize) -> Option<u32> {
+        let instances = self.of_agent[agent].iter().copied();
+        instances
+            .into_iter()
+            .find(|&instance| self.instances[instance as usize].definition as usize == number)
     }
 
     /// Whether an instance has agents.
@@ -323,6 +346,7 @@ impl<'p> Guards<'p> {
         if place == self.of_agent.len() {
             self.of_agent.push(Vec::new());
             self.hearing.push(Vec::new());
+            self.candidates.admit();
         }
     }
 
@@ -331,7 +355,7 @@ impl<'p> Guards<'p> {
         if self.definition(instance).quantified.is_empty() {
             return;
         }
-        for index in self.atom_range(instance) {
+        for index in self.atoms_of(instance) {
             self.atoms[index].left_out = self.leaves_out(agents, index);
         }
     }
@@ -357,7 +381,16 @@ impl<'p> Guards<'p> {
     /// The number of the atom instance of atom `atom` under the bindings in `slots`.
     pub fn atom_index(&self, agents: &Agents<'_>, instance: u32, atom: usize, slots: &Slots) -> usize {
         let shape = &self.definition(instance).atoms[atom];
-        self.instances[instance as usize].atoms as usize + shape.first + place(agents, shape, slots)
+        match shape.nearby {
+            Some((number, place)) => {
+                let agent = slots[shape.binders[0].slot];
+                let first = self.candidate(agents, instance, number, agent);
+                first.expect("who is asked is a candidate") + place
+            }
+            None => {
+                self.instances[instance as usize].atoms as usize + shape.first + place(agents, shape, slots)
+            }
+        }
     }
 
     /// The number of a `rising` flag under the bindings in `slots`.
@@ -383,8 +416,12 @@ impl<'p> Guards<'p> {
 
     /// The atom of an atom instance, and the agents that the quantifiers around it bind, innermost first.
     pub fn bindings(&self, agents: &Agents<'_>, index: usize) -> (usize, SmallVec<[(Range, usize); 2]>) {
-        let instance = self.atoms[index].instance;
+        let AtomState { instance, candidate, .. } = self.atoms[index];
         let shapes = &self.definition(instance).atoms;
+        if let Some((atom, agent)) = candidate {
+            let bound = (shapes[atom as usize].binders[0], agent as usize);
+            return (atom as usize, SmallVec::from_slice(&[bound]));
+        }
         let offset = index - self.instances[instance as usize].atoms as usize;
         let atom = shapes.partition_point(|shape| shape.first <= offset) - 1;
         let mut rest = offset - shapes[atom].first;
@@ -418,16 +455,22 @@ impl<'p> Guards<'p> {
 
     /// Whether an atom instance belongs to the filter of an aggregate.
     pub fn is_of_filter(&self, index: usize) -> bool {
+        if self.atoms[index].candidate.is_some() {
+            return false;
+        }
         let instance = self.atoms[index].instance;
         let definition = self.definition(instance);
         let offset = index - self.instances[instance as usize].atoms as usize;
         definition.atoms.get(definition.base).map_or(definition.base > 0, |first| offset < first.first)
     }
 
-    /// The range of an instance's atom instances.
-    pub fn atom_range(&self, instance: u32) -> std::ops::Range<usize> {
+    /// The numbers of an instance's atom instances.
+    pub fn atoms_of(&self, instance: u32) -> AtomNumbers {
         let first = self.instances[instance as usize].atoms as usize;
-        first..first + self.definition(instance).n_atoms
+        let own = first..first + self.definition(instance).n_atoms;
+        let mut ranges = SmallVec::from_elem(own, 1);
+        ranges.extend(self.candidate_ranges(instance));
+        ranges.into_iter().flatten()
     }
 }
 

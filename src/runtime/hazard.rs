@@ -46,7 +46,7 @@ impl Engine<'_, '_> {
             if !self.guards.instances[instance as usize].active {
                 continue;
             }
-            for index in self.guards.atom_range(instance) {
+            for index in self.guards.atoms_of(instance) {
                 self.settle(index, Rule::Rates, &Written::default());
             }
             let gate = f64::from(u8::from(self.truths().holds(instance, Side::After)));

@@ -311,7 +311,7 @@ impl Engine<'_, '_> {
         if !self.guards.instances[instance as usize].active {
             return;
         }
-        for index in self.guards.atom_range(instance) {
+        for index in self.guards.atoms_of(instance) {
             let state = &mut self.guards.atoms[index];
             let was_rooted = state.rooted;
             state.touched = false;
@@ -334,7 +334,7 @@ impl Engine<'_, '_> {
             }
             // What is enabled by it has been collected; it fires in the next micro-step or never.
             if !self.enabled(instance) {
-                for index in self.guards.atom_range(instance) {
+                for index in self.guards.atoms_of(instance) {
                     let state = &mut self.guards.atoms[index];
                     state.touched &= state.rooted;
                 }
@@ -344,7 +344,7 @@ impl Engine<'_, '_> {
 
     /// Ends the instant for an instance: what was true only at it is so no more.
     pub fn calm(&mut self, instance: u32) {
-        for index in self.guards.atom_range(instance) {
+        for index in self.guards.atoms_of(instance) {
             let state = &mut self.guards.atoms[index];
             state.touched = false;
             state.rooted = false;
@@ -361,7 +361,7 @@ impl Engine<'_, '_> {
             if claim.kind == ClaimKind::Property || !self.guards.instances[instance as usize].active {
                 continue;
             }
-            for index in self.guards.atom_range(instance) {
+            for index in self.guards.atoms_of(instance) {
                 self.settle(index, Rule::Rates, &Written::default());
             }
             let state = &self.guards.instances[instance as usize];

@@ -394,6 +394,7 @@ impl Engine<'_, '_> {
         }
         self.mail.forget(agent);
         self.neighbours.forget(&self.agents, agent);
+        written.bereft.extend(self.guards.dismiss_everywhere(&self.agents, agent));
         self.agents.dismiss(agent);
         self.guards.reseat(&self.agents, agent);
         self.recorder.dismiss(agent);

@@ -3,12 +3,15 @@
 //! A pair that is not listed cannot make its condition true: its flag is armed, and nothing else is remembered of it. An
 //! agent that is written, or whose flow changes, so that it may leave its box, is listed anew at once (rule 14).
 
+use std::ops::Range;
+
 use smallvec::SmallVec;
 
 use crate::codegen::program::Near;
 use crate::math::Interval;
 use crate::runtime::act::Written;
 use crate::runtime::arm::Rule;
+use crate::runtime::definition::Nearby;
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::grid::Grid;
@@ -16,19 +19,57 @@ use crate::runtime::guards::Origin;
 use crate::runtime::neighbours::{Field, Listed, NOWHERE};
 use crate::runtime::population::ABSENT;
 
-impl Engine<'_, '_> {
+/// What is new in the list of a field.
+#[derive(Debug)]
+pub struct New {
+    /// The instance of the pair, or that of the guard that looks at a candidate.
+    instance: u32,
+    /// The candidate.
+    candidate: Option<Nominee>,
+}
+
+/// A new candidate.
+#[derive(Debug)]
+struct Nominee {
+    /// Who it is.
+    agent: usize,
+    /// The number of the quantifier that looks at it.
+    number: usize,
+    /// The comparisons that are bound to it.
+    atoms: Range<usize>,
+}
+
+impl<'p> Engine<'p, '_> {
     /// Makes the fields of the interactions that have a range; nothing is listed yet.
     pub fn make_fields(&mut self) {
         let mut fields = Vec::new();
         for (number, definition) in self.guards.definitions.iter().enumerate() {
-            let Origin::Pair(pair) = definition.origin else { continue };
-            if definition.near.is_empty() {
-                continue;
+            let mut add = |quantifier: Option<usize>, ty: usize, near: &[Near], symmetric, with_self| {
+                let types = [definition.ty, ty];
+                let alike = types[0] == types[1] && near.iter().all(|near| near.own == near.other);
+                let (seats, grid, listed) = ([0; 2], Grid::default(), Vec::new());
+                let definition = number;
+                fields.push(Field {
+                    definition,
+                    quantifier,
+                    types,
+                    alike,
+                    symmetric,
+                    with_self,
+                    seats,
+                    grid,
+                    listed,
+                });
+            };
+            match definition.origin {
+                Origin::Pair(pair) if !definition.near.is_empty() => {
+                    add(None, definition.frame.slots[1].ty(), definition.near, pair.symmetric, false);
+                }
+                _ => {}
             }
-            let types = [definition.ty, definition.frame.slots[1].ty()];
-            let alike = types[0] == types[1] && definition.near.iter().all(|near| near.own == near.other);
-            let (symmetric, seats, grid, listed) = (pair.symmetric, [0; 2], Grid::default(), Vec::new());
-            fields.push(Field { definition: number, types, alike, symmetric, seats, grid, listed });
+            for (quantifier, Nearby { range, near, .. }) in definition.nearby.iter().enumerate() {
+                add(Some(quantifier), range.ty, near, false, range.ty == definition.ty && !range.other);
+            }
         }
         self.neighbours.fields = fields;
     }
@@ -38,8 +79,8 @@ impl Engine<'_, '_> {
         !self.neighbours.fields.is_empty()
     }
 
-    /// Lists the pairs that can come within range from the present instant up to `until`; returns the new instances.
-    pub fn list_pairs(&mut self, until: f64) -> Result<Vec<u32>, Failure> {
+    /// Lists the pairs that can come within range from the present instant up to `until`; returns what is new.
+    pub fn list_pairs(&mut self, until: f64) -> Result<Vec<New>, Failure> {
         let mut fields = std::mem::take(&mut self.neighbours.fields);
         let mut new = Vec::new();
         let mut done = Ok(());
@@ -54,8 +95,8 @@ impl Engine<'_, '_> {
         done.map(|()| new)
     }
 
-    fn list_field(&mut self, field: &mut Field, until: f64, new: &mut Vec<u32>) -> Result<(), Failure> {
-        let near = self.guards.definitions[field.definition].near;
+    fn list_field(&mut self, field: &mut Field, until: f64, new: &mut Vec<New>) -> Result<(), Failure> {
+        let near = self.ranges_of(field);
         let mut boxes = Vec::new();
         field.seats = field.seats_of(&self.agents);
         for side in field.sides() {
@@ -69,36 +110,58 @@ impl Engine<'_, '_> {
         field.grid = Grid::new(near.len(), boxes);
         let mut wanted: Vec<[u32; 2]> = Vec::new();
         field.grid.for_each_pair(&mut |a, b| wanted.extend(field.pairs(&self.agents, a, b)));
+        wanted.extend(field.selves(&self.agents).iter().map(|&agent| [agent as u32; 2]));
         wanted.sort_unstable();
         let before = std::mem::take(&mut field.listed);
         let mut before = before.into_iter().peekable();
         for agents in wanted {
             while let Some(old) = before.next_if(|old| old.agents < agents) {
-                self.let_go(old, &mut field.listed);
+                self.let_go(old, field);
             }
             match before.next_if(|old| old.agents == agents) {
                 Some(old) => field.listed.push(old),
-                None => {
-                    let instance = self.new_pair(field.definition, agents)?;
-                    field.listed.push(Listed { agents, instance });
-                    new.push(instance);
-                }
+                None => new.push(self.enter(field, agents)?),
             }
         }
         for old in before {
-            self.let_go(old, &mut field.listed);
+            self.let_go(old, field);
         }
         field.listed.sort_unstable();
         Ok(())
     }
 
+    /// How near the agents of a field's pairs are where its condition is not settled.
+    fn ranges_of(&self, field: &Field) -> &'p [Near] {
+        let definition = &self.guards.definitions[field.definition];
+        field.quantifier.map_or(definition.near, |number| definition.nearby[number].near)
+    }
+
     /// Forgets a pair that is not near any more, but for one whose guard has not been found false since it fired.
-    fn let_go(&mut self, old: Listed, listed: &mut Vec<Listed>) {
-        if self.guards.instances[old.instance as usize].armed {
+    fn let_go(&mut self, old: Listed, field: &mut Field) {
+        if let Some(number) = field.quantifier {
+            self.guards.dismiss(&self.agents, old.instance, number, old.agents[1] as usize);
+        } else if self.guards.instances[old.instance as usize].armed {
             self.guards.retire(old.instance);
         } else {
-            listed.push(old);
+            field.listed.push(old);
         }
+    }
+
+    /// Lists a pair of a field.
+    fn enter(&mut self, field: &mut Field, agents: [u32; 2]) -> Result<New, Failure> {
+        let Some(number) = field.quantifier else {
+            let instance = self.new_pair(field.definition, agents)?;
+            field.listed.push(Listed { agents, instance });
+            return Ok(New { instance, candidate: None });
+        };
+        let instance = self.guards.instance_of(field.definition, agents[0] as usize);
+        let instance = instance.expect("a guard that is not of a pair has an instance for each agent");
+        let n = self.guards.n_for_candidate(instance, number);
+        self.mind_guards((self.guards.instances.len() + self.guards.atoms.len() + n) as u128)?;
+        field.listed.push(Listed { agents, instance });
+        let (atoms, agent) =
+            (self.guards.nominate(&self.agents, instance, number, agents[1] as usize), agents[1] as usize);
+        Ok(New { instance, candidate: Some(Nominee { agent, number, atoms }) })
     }
 
     fn new_pair(&mut self, definition: usize, agents: [u32; 2]) -> Result<u32, Failure> {
@@ -151,12 +214,12 @@ impl Engine<'_, '_> {
         born: &[usize],
         armed: &mut Vec<u32>,
     ) -> Result<(), Failure> {
+        let near = self.ranges_of(field);
         if field.seats != field.seats_of(&self.agents) {
             let mut new = Vec::new();
             self.list_field(field, self.neighbours.until, &mut new)?;
-            return new.into_iter().try_for_each(|instance| self.introduce(instance, born, armed));
+            return new.into_iter().try_for_each(|new| self.introduce(new, born, armed));
         }
-        let near = self.guards.definitions[field.definition].near;
         let mut moved = Vec::new();
         for &agent in agents {
             for side in field.sides() {
@@ -169,17 +232,19 @@ impl Engine<'_, '_> {
                 }
             }
         }
+        let mut wanted: Vec<[u32; 2]> = Vec::new();
         for &number in &moved {
             for other in field.grid.around(number) {
-                let pairs = field.pairs(&self.agents, number.min(other), number.max(other));
-                for agents in pairs {
-                    if self.has_pair(field.definition, agents) {
-                        continue;
-                    }
-                    let instance = self.new_pair(field.definition, agents)?;
-                    field.listed.push(Listed { agents, instance });
-                    self.introduce(instance, born, armed)?;
-                }
+                wanted.extend(field.pairs(&self.agents, number.min(other), number.max(other)));
+            }
+        }
+        let selves =
+            born.iter().filter(|&&agent| field.with_self && self.agents.agents[agent].ty == field.types[0]);
+        wanted.extend(selves.map(|&agent| [agent as u32; 2]));
+        for agents in wanted {
+            if !self.has_pair(field, agents) {
+                let new = self.enter(field, agents)?;
+                self.introduce(new, born, armed)?;
             }
         }
         if !moved.is_empty() {
@@ -188,8 +253,15 @@ impl Engine<'_, '_> {
         Ok(())
     }
 
-    /// Arms an instance of a pair that is new in a list: because one of the two is new, or because they have come near.
-    fn introduce(&mut self, instance: u32, born: &[usize], armed: &mut Vec<u32>) -> Result<(), Failure> {
+    /// Arms an instance of a pair that is new in a list, because one of the two is new, or because they have come near; or
+    /// settles the comparisons with a new candidate.
+    fn introduce(&mut self, new: New, born: &[usize], armed: &mut Vec<u32>) -> Result<(), Failure> {
+        let New { instance, candidate } = new;
+        if let Some(nominee) = candidate {
+            let rule = if born.contains(&nominee.agent) { Rule::Fresh } else { Rule::Rates };
+            self.settle_candidate(instance, nominee, rule);
+            return Ok(());
+        }
         let roots = self.guards.roots(instance);
         if !roots.iter().any(|root| born.contains(root)) {
             self.meet(instance);
@@ -199,32 +271,61 @@ impl Engine<'_, '_> {
         self.arm(instance, Rule::Fresh)
     }
 
-    fn has_pair(&self, definition: usize, agents: [u32; 2]) -> bool {
-        self.guards.of_agent[agents[0] as usize].iter().any(|&instance| {
+    fn has_pair(&self, field: &Field, [first, second]: [u32; 2]) -> bool {
+        if let Some(number) = field.quantifier {
+            let instance = self.guards.instance_of(field.definition, first as usize);
+            return instance.is_some_and(|instance| {
+                self.guards.candidate(&self.agents, instance, number, second as usize).is_some()
+            });
+        }
+        self.guards.of_agent[first as usize].iter().any(|&instance| {
             let state = &self.guards.instances[instance as usize];
-            state.definition as usize == definition && state.roots == agents
+            state.definition as usize == field.definition && state.roots == [first, second]
         })
     }
 
     /// Arms an instance of a pair that has just come near: its condition has been false until now.
-    pub fn meet(&mut self, instance: u32) {
+    fn meet(&mut self, instance: u32) {
         self.arm_again(instance);
-        for index in self.guards.atom_range(instance) {
+        for index in self.guards.atoms_of(instance) {
             if !self.settle_far(index) {
                 self.settle(index, Rule::Rates, &Written::default());
             }
         }
     }
 
-    /// The same of one that may come near from now on, and is not yet: its condition is false.
-    pub fn await_pair(&mut self, instance: u32) {
-        if self.guards.definition(instance).comparisons.len() != 1 {
-            return self.meet(instance);
+    fn settle_candidate(&mut self, instance: u32, nominee: Nominee, rule: Rule) {
+        // A guard that is not active is settled when it is armed.
+        if !self.guards.instances[instance as usize].active {
+            return;
         }
-        self.arm_again(instance);
+        for index in nominee.atoms {
+            if !self.settle_far(index) {
+                self.settle(index, rule, &Written::default());
+            }
+        }
+    }
+
+    /// Arms an instance of a pair that may come near from now on, and is not yet: its condition is false. Likewise the
+    /// comparisons with a candidate.
+    pub fn await_pair(&mut self, new: New) {
+        let New { instance, candidate } = new;
         let time = self.present.time;
-        for index in self.guards.atom_range(instance) {
-            self.recertify(index, time);
+        match candidate {
+            Some(nominee) if self.guards.definition(instance).nearby[nominee.number].beyond.is_none() => {
+                self.settle_candidate(instance, nominee, Rule::Rates);
+            }
+            Some(nominee) if self.guards.instances[instance as usize].active => {
+                nominee.atoms.for_each(|index| self.recertify(index, time));
+            }
+            Some(_) => {}
+            None if self.guards.definition(instance).comparisons.len() != 1 => self.meet(instance),
+            None => {
+                self.arm_again(instance);
+                for index in self.guards.atoms_of(instance) {
+                    self.recertify(index, time);
+                }
+            }
         }
     }
 

@@ -20,14 +20,16 @@ pub struct Neighbours {
     pub until: f64,
     /// For how long they were made, s.
     pub span: f64,
-    /// One for each transition of an interaction that has a range.
+    /// One for each transition of an interaction, and for each quantifier, that has a range.
     pub fields: Vec<Field>,
 }
 
-/// The pairs of one transition of an interaction.
+/// The pairs of one transition of an interaction, or of the owners of a guard and those at whom a quantifier of it looks.
 pub struct Field {
     /// Its definition.
     pub definition: usize,
+    /// The number of the quantifier; none for an interaction.
+    pub quantifier: Option<usize>,
     /// The types of the two.
     pub types: [usize; 2],
     /// Whether each of the two is found by the same states of the same type: then an agent has one box.
@@ -38,7 +40,9 @@ pub struct Field {
     pub seats: [usize; 2],
     /// The boxes of the first type, then, if they are not alike, those of the second, each by seat.
     pub grid: Grid,
-    /// Pairs that have instances, with those.
+    /// Whether an agent is paired with itself.
+    pub with_self: bool,
+    /// Pairs that have instances, with those; of a quantifier with the instance of the guard.
     pub listed: Vec<Listed>,
 }
 
@@ -67,6 +71,11 @@ impl Field {
     /// How many seats either type has now.
     pub fn seats_of(&self, agents: &Agents<'_>) -> [usize; 2] {
         self.types.map(|ty| agents.seats[ty].len())
+    }
+
+    /// Those who are paired with themselves.
+    pub fn selves<'a>(&self, agents: &'a Agents<'_>) -> &'a [usize] {
+        if self.with_self { &agents.of_type[self.types[0]] } else { &[] }
     }
 
     /// The pairs of agents that two boxes, a < b, stand for.

@@ -8,6 +8,9 @@ use crate::runtime::population::Agents;
 impl Guards<'_> {
     /// The atom instances of an instance that are bound to the seat of an agent.
     pub fn atoms_at(&self, agents: &Agents<'_>, instance: u32, agent: usize) -> Vec<usize> {
+        if !self.definition(instance).nearby.is_empty() {
+            return self.atoms_of_candidate(agents, instance, agent);
+        }
         let first = self.instances[instance as usize].atoms as usize;
         at_seat(agents, &self.definition(instance).atoms, agent).into_iter().map(|k| first + k).collect()
     }
@@ -29,12 +32,14 @@ impl Guards<'_> {
 
     /// How many atom instances there are when there is room for all seats.
     pub fn size(&self, agents: &Agents<'_>) -> usize {
-        let seats = |shape: &AtomShape| {
-            shape.binders.iter().map(|binder| agents.seats[binder.ty].len()).product::<usize>()
-        };
+        let seats = |shape: &AtomShape| shape.n_seats(|ty| agents.seats[ty].len());
         let sizes: Vec<usize> =
             self.definitions.iter().map(|definition| definition.atoms.iter().map(seats).sum()).collect();
-        self.instances.iter().map(|instance| sizes[instance.definition as usize]).sum()
+        let own = |number: u32| {
+            let candidates: usize = self.candidate_ranges(number).map(|range| range.len()).sum();
+            sizes[self.instances[number as usize].definition as usize] + candidates
+        };
+        (0..self.instances.len() as u32).map(own).sum()
     }
 
     /// Makes room for seats that have been added behind the `before` ones that a type had.
@@ -44,7 +49,7 @@ impl Guards<'_> {
             .iter()
             .map(|definition| (definition.atoms.clone(), definition.rising.clone()))
             .collect();
-        if !self.definitions.iter().any(|definition| definition.binds(ty)) {
+        if !self.definitions.iter().any(|definition| definition.binds_all(ty)) {
             return;
         }
         let old_sizes: Vec<usize> = self.definitions.iter().map(|definition| definition.n_atoms).collect();
@@ -69,6 +74,17 @@ impl Guards<'_> {
                 self.rising[to] = old_rising[first + k];
             }
             instance.rising = new as u32;
+            for (number, nearby) in definition.nearby.iter().enumerate() {
+                let list = instance.lists as usize + number;
+                self.candidates.relocate(list, &mut |first| {
+                    let (first, to) = (first as usize, self.atoms.len() as u32);
+                    for k in 0..nearby.atoms.len() {
+                        moved[first + k] = to + k as u32;
+                        self.atoms.push(old_atoms[first + k]);
+                    }
+                    to
+                });
+            }
         }
         queues.renumber_atoms(&moved);
     }
@@ -107,7 +123,7 @@ fn at_seat(agents: &Agents<'_>, shapes: &[AtomShape], agent: usize) -> Vec<usize
 /// How many places some shapes took when a type had `before` seats.
 fn size(agents: &Agents<'_>, shapes: &[AtomShape], (ty, before): (usize, usize)) -> usize {
     let seats = |other: usize| if other == ty { before } else { agents.seats[other].len() };
-    shapes.iter().map(|shape| shape.binders.iter().map(|binder| seats(binder.ty)).product::<usize>()).sum()
+    shapes.iter().map(|shape| shape.n_seats(seats)).sum()
 }
 
 /// Where offset `k` lies now that a type has more than `before` seats.

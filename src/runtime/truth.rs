@@ -131,12 +131,23 @@ impl<'p> Truths<'_, 'p> {
     fn first(&self, at: At, quantified: &Quantified, slots: &mut Slots, wanted: bool) -> Option<usize> {
         let roots = self.guards.roots(at.instance);
         let frame = self.guards.definition(at.instance).frame;
-        let range = &self.agents.of_type[quantified.ty];
-        range.iter().copied().filter(|&agent| allowed(quantified, &roots, agent)).find(|&agent| {
+        let mut is_wanted = |agent: usize| {
             slots[quantified.slot] = agent;
             self.agents.follow_links(frame, slots);
             self.condition(at, &quantified.body, slots) == wanted
-        })
+        };
+        if let Some(candidates) = self.guards.candidates_at(at.instance, quantified.slot) {
+            return candidates
+                .iter()
+                .map(|candidate| candidate.agent as usize)
+                .find(|&agent| is_wanted(agent));
+        }
+        let range = &self.agents.of_type[quantified.ty];
+        range
+            .iter()
+            .copied()
+            .filter(|&agent| allowed(quantified, &roots, agent))
+            .find(|&agent| is_wanted(agent))
     }
 
     /// The slots of an instance whose guard holds, with the witnesses of its outermost `exists` (rule 2).

@@ -46,9 +46,7 @@ impl Engine<'_, '_> {
                 let span = self.neighbours.span;
                 let new = self.list_pairs((from + span).min(self.time_end))?;
                 self.neighbours.span = self.next_span(new.len());
-                for instance in new {
-                    self.await_pair(instance);
-                }
+                new.into_iter().for_each(|new| self.await_pair(new));
             }
             let mut until = self.time_end;
             if self.has_fields() {

@@ -3,5 +3,6 @@
 
 mod forms;
 mod crowd;
+mod lookouts;
 mod written;
 mod generated;

@@ -12,6 +12,7 @@ use hyc::runtime::paper::Form;
 
 use super::crowd;
 use super::forms::{TOLERANCE, both, difference};
+use super::lookouts;
 use crate::differential::dice::{WITH_AGGREGATES, WITH_EVENTS};
 use crate::differential::generate;
 use crate::harness::Case;
@@ -131,4 +132,9 @@ fn the_forms_agree_on_random_models_with_events() {
 #[test]
 fn the_forms_agree_on_crowds() {
     agree(0, 15, &LONG_CROWDS, &crowd::model);
+}
+
+#[test]
+fn the_forms_agree_on_crowds_that_look_around() {
+    agree(0, 16, &[], &lookouts::model);
 }

@@ -14,6 +14,35 @@ fn alike(text: &str, n_events: usize) -> super::forms::Both {
     same(&format!("{HASH}\n{text}"), n_events)
 }
 
+/// Who looks around has comparisons with those only who are near: their number per agent does not grow with the crowd.
+#[test]
+fn who_looks_around_looks_at_who_is_near() {
+    let run = |side: u32| {
+        let text = format!(
+            "{HASH}
+             agent Pod(i: int) {{
+               state x = 4*(mod(i, {side}) + hash(i, 0)), y = 4*(floor(i/{side}) + hash(i, 1)), th = 6.28*hash(i, 2)
+               discrete met: int = 0, free: int = 0
+               flow {{ x' = 2*cos(th)  y' = 2*sin(th)  th' = 0.3 }}
+               initial mode Go {{
+                 close: when exists o in other Pod: (o.x - x)^2 + (o.y - y)^2 <= 1 -> Shy {{ met := met + 1 }} }}
+               mode Shy {{
+                 clear: when forall o in other Pod: hypot(o.x - x, o.y - y) >= 1.5 -> Go {{ free := free + 1 }} }} }}
+             system {{ pods = Pod[{}](i = index) }}  run {{ until 3 }}",
+            side * side
+        );
+        by(&text, Form::Fast, 1e-6)
+    };
+    let (few, many) = (run(6), run(18));
+    assert!(many.times("Pod.close").len() > 100 && many.times("Pod.clear").len() > 50);
+    let per_agent = |run: &crate::harness::Run, n: f64| {
+        [run.stats.guard_evaluations as f64 / n, run.stats.pairs_listed as f64 / n]
+    };
+    for (few, many) in per_agent(&few, 36.0).into_iter().zip(per_agent(&many, 324.0)) {
+        assert!(many < 2.0 * few, "{few} an agent of 36, {many} an agent of 324");
+    }
+}
+
 #[test]
 fn a_ring_road_whose_end_is_its_begin() {
     let both = alike(
