@@ -21,7 +21,7 @@ impl<'p> Engine<'p, '_> {
     /// Watches the properties on the way to `time`, up to which all agents are known and nothing happens.
     pub fn watch_up_to(&mut self, time: f64) {
         let from = self.monitors.done;
-        if self.monitors.properties.is_empty() || time <= from {
+        if self.monitors.properties.is_empty() || time <= from || time == f64::INFINITY {
             return;
         }
         let mut monitors = std::mem::take(&mut self.monitors);

@@ -153,6 +153,9 @@ pub fn greatest_ahead(signal: &[Piece], [c, d]: [f64; 2]) -> Vec<Piece> {
     let pieces: Vec<Piece> = signal.iter().flat_map(|piece| piece.monotone().collect::<Vec<_>>()).collect();
     let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { return Vec::new() };
     let (begin, end) = (first.start, last.end);
+    if begin > end - c {
+        return Vec::new();
+    }
     let peaks = Peaks::new(&pieces);
     let mut breaks: Vec<f64> = pieces
         .iter()
