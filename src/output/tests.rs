@@ -200,6 +200,7 @@ fn outcome(end: End) -> Outcome {
             transitions: vec![("Car.left".into(), 2), ("Car.right".into(), 0), ("Bump.pair".into(), 5)],
             ..Stats::default()
         },
+        verdicts: Vec::new(),
         false_asserts: vec![FalseAssert {
             span: Default::default(),
             message: Some("rear-end collision".into()),
