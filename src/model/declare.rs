@@ -101,6 +101,7 @@ impl<'a> Context<'a> {
             states: Vec::new(),
             discretes: Vec::new(),
             links: Vec::new(),
+            sets: Vec::new(),
             events: Vec::new(),
             lets: Vec::new(),
             declared: Vec::new(),

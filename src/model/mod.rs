@@ -53,6 +53,7 @@ mod make;
 mod record;
 mod run;
 mod watch;
+mod sets;
 mod consistency;
 mod origin;
 mod formula;
@@ -132,6 +133,7 @@ pub fn check(ast: &Ast, sources: &mut SourceMap, files: &mut dyn Files, settings
     run::trajectories(&mut context, &items, settings);
     consistency::check_dimensions(&mut context);
     let warnings = lint::lint(&mut context);
+    sets::fill(&mut context);
     context.finish(warnings)
 }
 
