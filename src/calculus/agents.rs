@@ -148,7 +148,9 @@ pub fn modes(draft: &mut Draft) {
             let name = mode_name(ty, declared);
             let mut claims = Vec::new();
             let invariants = declared.invariants.iter().map(|claim| (ClaimKind::Invariant, claim));
-            let asserts = declared.asserts.iter().map(|claim| (ClaimKind::Assert, claim));
+            let is_watcher = draft.model.watch.as_ref().is_some_and(|watch| watch.ty == id);
+            let asserted = if is_watcher { ClaimKind::Property } else { ClaimKind::Assert };
+            let asserts = declared.asserts.iter().map(|claim| (asserted, claim));
             for (kind, claim) in invariants.chain(asserts) {
                 let lowered = self::claim(draft, id, kind, claim, &name);
                 claims.extend(draft.keep(lowered));
@@ -173,9 +175,15 @@ fn claim(
         ClaimKind::Invariant => "invariant",
         ClaimKind::Assert => "assert",
         ClaimKind::Rate => "rate",
+        ClaimKind::Property => "property",
     };
     let name = format!("{name} {word}");
-    let violation = guard::guard(draft, &mut scope, claim.condition, Sense::Negative, &name)?;
+    let violation = match kind {
+        ClaimKind::Property => guard::margins(draft, &mut scope, claim.condition, &name)?,
+        ClaimKind::Invariant | ClaimKind::Assert | ClaimKind::Rate => {
+            guard::guard(draft, &mut scope, claim.condition, Sense::Negative, &name)?
+        }
+    };
     let (frame, message) = (scope.into_frame(), claim.message.clone());
     Ok(ClaimSystem { kind, frame, violation, message, span: claim.span })
 }

@@ -4,7 +4,7 @@
 //! regular where those of the distance are not. An `if` inside becomes a choice between two comparisons: see `jumps`.
 
 use crate::base::Span;
-use crate::calculus::condition::{Cond, DEPTH_MAX, Lowering, PARTS_MAX, Sense, Written};
+use crate::calculus::condition::{Cond, DEPTH_MAX, Lowering, PARTS_MAX, Reading, Sense, Written};
 use crate::calculus::error::Error;
 use crate::calculus::extremes::Slope;
 use crate::calculus::graph::{Node, NodeId};
@@ -15,7 +15,8 @@ use crate::math::Op;
 impl Lowering<'_, '_> {
     /// `a == b` or `a != b` of numbers; the model allows reals only where both are discrete.
     pub fn equality(&mut self, same: bool, a: NodeId, b: NodeId, span: Span) -> Result<Cond, Error> {
-        let moving = self.draft.graph.moves(a) || self.draft.graph.moves(b);
+        let moving =
+            self.reading == Reading::Margin || self.draft.graph.moves(a) || self.draft.graph.moves(b);
         if same && !moving {
             let node = self.draft.graph.binary(Op::Eq, a, b);
             return self.test(node, Sense::Positive, span);
@@ -41,6 +42,11 @@ impl Lowering<'_, '_> {
 
     /// `a <= b` or `a < b`.
     pub fn less(&mut self, relation: Relation, a: NodeId, b: NodeId, span: Span) -> Result<Cond, Error> {
+        if self.reading == Reading::Margin {
+            let difference = self.draft.graph.binary(Op::Sub, a, b);
+            let g = jumps::to_be_locked(&mut self.draft.graph, difference);
+            return self.atom(relation, g, span);
+        }
         let graph = &mut self.draft.graph;
         if !graph.moves(a) && !graph.moves(b) {
             let op = if relation == Relation::NonPositive { Op::Le } else { Op::Lt };

@@ -81,13 +81,27 @@ pub fn lower_in(
     sense: Sense,
 ) -> Result<Cond, Error> {
     let span = draft.model.exprs[expr].span;
-    Lowering { draft, scope, span, sides: None, parts: 0, depth: 0, quantifiers: 0 }.lower(env, expr, sense)
+    let reading = Reading::Truth;
+    Lowering { draft, scope, span, reading, sides: None, parts: 0, depth: 0, quantifiers: 0 }
+        .lower(env, expr, sense)
+}
+
+/// Lowers a boolean expression so that every comparison of numbers, moving or not, is an atom whose g is minus its margin.
+pub fn lower_margins(draft: &mut Draft, scope: &mut Scope, expr: ExprId) -> Result<Cond, Error> {
+    let span = draft.model.exprs[expr].span;
+    let reading = Reading::Margin;
+    Lowering { draft, scope, span, reading, sides: None, parts: 0, depth: 0, quantifiers: 0 }.lower(
+        Scope::TOP,
+        expr,
+        Sense::Positive,
+    )
 }
 
 /// `a < b`, for numbers that have been lowered.
 pub fn less(draft: &mut Draft, scope: &mut Scope, a: NodeId, b: NodeId, span: Span) -> Result<Cond, Error> {
     let sides = Some(Sides { left: a, sign: "<", right: b });
-    Lowering { draft, scope, span, sides, parts: 0, depth: 0, quantifiers: 0 }.less(
+    let reading = Reading::Truth;
+    Lowering { draft, scope, span, reading, sides, parts: 0, depth: 0, quantifiers: 0 }.less(
         Relation::Negative,
         a,
         b,
@@ -95,11 +109,22 @@ pub fn less(draft: &mut Draft, scope: &mut Scope, a: NodeId, b: NodeId, span: Sp
     )
 }
 
+/// What is asked of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Reading {
+    /// Whether it holds.
+    Truth,
+    /// By how much.
+    Margin,
+}
+
 pub(super) struct Lowering<'d, 'm> {
     pub draft: &'d mut Draft<'m>,
     pub scope: &'d mut Scope,
     /// Where the whole condition stands.
     pub span: Span,
+    /// What is asked of a comparison.
+    pub reading: Reading,
     /// The comparison at hand, as it is written.
     pub sides: Option<Sides>,
     pub parts: usize,

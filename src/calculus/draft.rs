@@ -94,6 +94,7 @@ impl<'m> Draft<'m> {
             interactions,
             population: self.model.population.clone(),
             run: self.model.run.clone(),
+            watch: self.model.watch.clone(),
         })
     }
 

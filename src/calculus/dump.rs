@@ -99,9 +99,11 @@ fn mode(system: &System, ty: &AgentSystem, mode: &ModeSystem, out: &mut String) 
             ClaimKind::Invariant => "invariant",
             ClaimKind::Assert => "assert",
             ClaimKind::Rate => "rate not negative",
+            ClaimKind::Property => "property",
         };
         let text = block.condition(&sheet, &claim.violation, &claim.violation.condition, 0);
-        block.line(4, format!("{word} violated by {text}"));
+        let whose = if claim.kind == ClaimKind::Property { "of" } else { "violated by" };
+        block.line(4, format!("{word} {whose} {text}"));
         block.ranges(&sheet, &claim.violation.condition, 6);
         block.atoms(&sheet, &claim.violation.atoms, 6);
         block.close(&sheet, out);

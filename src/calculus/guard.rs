@@ -32,6 +32,14 @@ pub fn guard(
     Ok(guard)
 }
 
+/// Lowers a boolean expression to a guard whose comparisons have their margins.
+pub fn margins(draft: &mut Draft, scope: &mut Scope, expr: ExprId, name: &str) -> Result<Guard, Error> {
+    let cond = condition::lower_margins(draft, scope, expr)?;
+    let guard = finish(draft, &scope.frame, cond, name);
+    draft.check_work(draft.model.exprs[expr].span)?;
+    Ok(guard)
+}
+
 /// Numbers the atoms of a condition.
 pub fn finish(draft: &mut Draft, frame: &Frame, cond: Cond, name: &str) -> Guard {
     let mut numbering = Numbering { draft, frame, name, atoms: Vec::new(), nodes: Vec::new(), n_rising: 0 };

@@ -19,7 +19,8 @@ pub use crate::calculus::relation::Relation;
 pub use crate::calculus::slot::Slot;
 pub use crate::math::draw::Distribution;
 pub use crate::model::ir::{
-    Aggregate, Block, Destination, Inside, Instance, Integrator, Population, Record, Run, VarRef,
+    Aggregate, Block, Destination, Formula, Inside, Instance, Integrator, Population, Property, Record, Run,
+    VarRef, Watch,
 };
 
 mod action;
@@ -44,6 +45,8 @@ pub struct System {
     pub population: Population,
     /// Settings of the run.
     pub run: Run,
+    /// What watches it; its type is one of the types.
+    pub watch: Option<Watch>,
 }
 
 /// Values to be computed together.
@@ -434,7 +437,7 @@ pub struct Guard {
     pub n_rising: usize,
 }
 
-/// An invariant or an assert; the guard is of its *negation*.
+/// An invariant or an assert, whose guard is of its *negation*; or a condition of a property.
 #[derive(Clone, Debug)]
 pub struct ClaimSystem {
     /// Which.
@@ -458,6 +461,8 @@ pub enum ClaimKind {
     Assert,
     /// That a hazard is not negative: a violation ends the run.
     Rate,
+    /// A condition of a property: its guard is of the condition itself, and each g is minus the margin of what is written.
+    Property,
 }
 
 /// An interaction of two agents.

@@ -55,7 +55,7 @@ pub(super) struct RunArguments {
     pub(super) engine: EngineArguments,
     #[command(flatten)]
     pub(super) outputs: OutputArguments,
-    /// What a false `assert` does to the exit code: 4, or 0
+    /// What a false `assert` or `property` does to the exit code: 4, or 0
     #[arg(long = "assert", value_enum, default_value_t, value_name = "LEVEL")]
     pub(super) asserts: AssertLevel,
     /// Leave out warnings of this code (repeatable)

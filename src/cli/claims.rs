@@ -1,12 +1,22 @@
-//! False asserts as diagnostics.
+//! False asserts and properties as diagnostics.
 
 use crate::base::{Diagnostic, number_text};
 use crate::output::Cast;
-use crate::runtime::observe::{Compared, FalseAssert};
+use crate::runtime::observe::{Compared, FalseAssert, Verdict};
 
 /// One warning for each assert that was false, in the order in which they first were.
 pub(super) fn diagnostics(claims: &[FalseAssert], cast: &Cast) -> Vec<Diagnostic> {
     claims.iter().map(|claim| diagnostic(claim, cast)).collect()
+}
+
+/// One warning for each property that does not hold.
+pub(super) fn of_properties(verdicts: &[Verdict]) -> Vec<Diagnostic> {
+    let wrong = verdicts.iter().filter(|verdict| !verdict.holds);
+    let told = wrong.map(|verdict| {
+        Diagnostic::warning("HY0521", format!("the property `{}` is false", verdict.name))
+            .label(verdict.span, verdict.told())
+    });
+    told.collect()
 }
 
 fn diagnostic(claim: &FalseAssert, cast: &Cast) -> Diagnostic {

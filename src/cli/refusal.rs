@@ -19,10 +19,16 @@ pub(super) fn refuse_engine(arguments: &EngineArguments) -> Result<(), Refused> 
 
 /// Refuses what the published algorithms cannot run.
 pub(super) fn refuse_aggregates(algorithm: Algorithm, program: &Program) -> Result<(), Refused> {
-    if matches!(algorithm, Algorithm::Masim(_)) || published_take(program) {
+    if matches!(algorithm, Algorithm::Masim(_)) {
         return Ok(());
     }
     let name = algorithm.name();
+    if !program.properties().is_empty() {
+        return Err(format!("`{name}` does not watch properties; there is `masim`"));
+    }
+    if published_take(program) {
+        return Ok(());
+    }
     Err(format!(
         "`{name}` does not take agents that are created or destroyed, links with an expression, nor guards with count, sum, min or max over agents that come and go while states flow (their \
          `where` compares what flows): such a guard jumps; there is `masim`"

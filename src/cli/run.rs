@@ -116,6 +116,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     };
     tell(&sources, &outcome.warnings);
     tell(&sources, &claims::diagnostics(&outcome.false_asserts, &cast));
+    tell(&sources, &claims::of_properties(&outcome.verdicts));
     if let Some(sink) = stats_sink {
         write_whole(sink, &statistics(&report))?;
     }
@@ -258,8 +259,9 @@ fn conclude(outcome: &Outcome, sources: &SourceMap, asserts: AssertLevel) -> Exi
         }
         End::Interrupted => Exit::Interrupted,
         End::Until | End::Stop { .. } => {
-            let claims_count = asserts == AssertLevel::Error && !outcome.false_asserts.is_empty();
-            if claims_count { Exit::FalseClaim } else { Exit::Fine }
+            let wrong =
+                !outcome.false_asserts.is_empty() || outcome.verdicts.iter().any(|verdict| !verdict.holds);
+            if wrong && asserts == AssertLevel::Error { Exit::FalseClaim } else { Exit::Fine }
         }
     }
 }

@@ -91,8 +91,21 @@ fn link(system: System, tapes: Vec<Arc<Tape>>, code: Code, later: Option<Arc<Lat
     };
     let kernels = tapes.into_iter().zip(code.kernels).enumerate();
     let kernels = kernels.map(|(number, (tape, code))| Kernel::new(tape, means(number, code))).collect();
-    let System { graph, functions, types, interactions, population, run } = system;
-    Program { graph, functions, types, interactions, population, run, kernels, steps, series, cost, later }
+    let System { graph, functions, types, interactions, population, run, watch } = system;
+    Program {
+        graph,
+        functions,
+        types,
+        interactions,
+        population,
+        run,
+        watch,
+        kernels,
+        steps,
+        series,
+        cost,
+        later,
+    }
 }
 
 /// What is made of the series of each mode's flow, or of why there is none: for each type, for each mode.

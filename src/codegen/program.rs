@@ -9,10 +9,10 @@ use crate::calculus::system::Function;
 pub use crate::calculus::system::FunctionId;
 pub use crate::calculus::system::{
     ActionList, ActionStep, AgentSystem, Aggregate, Atom, Birth, ClaimKind, ClaimSystem, Column, Condition,
-    Destination, Distribution, Flow, Fold, Frame, Guard, Initials, Inside, Integrator, InteractionSystem,
-    Jumps, Kink, KinkKind, Layout, LetSystem, LetValue, LinkUpdate, ModeSystem, Near, PairTransition,
-    Population, Quantified, Range, Record, Relation, Run, Sender, Slot, Source, Target, Term,
-    TransitionSystem, Trigger, VarRef, Whither,
+    Destination, Distribution, Flow, Fold, Formula, Frame, Guard, Initials, Inside, Integrator,
+    InteractionSystem, Jumps, Kink, KinkKind, Layout, LetSystem, LetValue, LinkUpdate, ModeSystem, Near,
+    PairTransition, Population, Property, Quantified, Range, Record, Relation, Run, Sender, Slot, Source,
+    Target, Term, TransitionSystem, Trigger, VarRef, Watch, Whither,
 };
 use crate::codegen::kernel::{Kernel, StepKernel};
 use crate::codegen::later::Later;
@@ -33,6 +33,8 @@ pub struct Program {
     pub population: Population,
     /// Settings of the run.
     pub run: Run,
+    /// What watches it; its type is one of the types.
+    pub watch: Option<Watch>,
     /// One kernel for each function of the system, same number.
     pub kernels: Vec<Kernel>,
     /// Whole Runge-Kutta steps: for each type, for each mode, where the flow reads no foreign state (and is compiled).
@@ -72,6 +74,16 @@ impl Program {
     /// All lists of actions.
     pub fn action_lists(&self) -> impl Iterator<Item = &ActionList> {
         action_lists(&self.types, &self.interactions)
+    }
+
+    /// The type of the agent that watches and that nobody sees.
+    pub fn watcher(&self) -> Option<usize> {
+        self.watch.as_ref().map(|watch| watch.ty.index())
+    }
+
+    /// The properties that are watched.
+    pub fn properties(&self) -> &[Property] {
+        self.watch.as_ref().map_or(&[], |watch| &watch.properties)
     }
 
     /// The kernel of a function.

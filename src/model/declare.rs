@@ -29,8 +29,7 @@ impl<'a> Context<'a> {
         self.definitions.reserve(items.len());
         for item in items {
             match item {
-                Item::Import(_) => {}
-                Item::Property(property) => self.refuse("properties", property.span),
+                Item::Import(_) | Item::Property(_) => {}
                 Item::Param(param) => self.declare_definition(&param.name, Body::Param(param)),
                 Item::Let(item) => self.declare_definition(&item.name, Body::Let(item)),
                 Item::Fn(item) => self.declare_definition(&item.name, Body::Function(item)),

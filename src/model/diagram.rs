@@ -55,7 +55,7 @@ pub fn diagrams(model: &Model, sources: &SourceMap) -> Vec<Diagram> {
         diagram.arrows.extend(arrows_of_interactions(model, ty, sources));
         diagram
     };
-    model.types.iter_enumerated().map(of_type).collect()
+    model.visible_types().map(|ty| of_type((ty, &model.types[ty]))).collect()
 }
 
 fn diagram(agent: &AgentType, sources: &SourceMap) -> Diagram {

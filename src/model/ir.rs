@@ -48,10 +48,61 @@ pub struct Model {
     pub population: Population,
     /// What `run { }` says.
     pub run: Run,
+    /// What watches the run.
+    pub watch: Option<Watch>,
     /// What it may ask for.
     pub limits: Limits,
     /// The files of the text in the order of what they declare: imported ones before those that import them.
     pub files: Vec<FileId>,
+}
+
+impl Model {
+    /// The agent types that the text declares.
+    pub fn visible_types(&self) -> impl Iterator<Item = TypeId> + use<> {
+        let watcher = self.watch.as_ref().map(|watch| watch.ty);
+        self.types.indices().filter(move |&ty| Some(ty) != watcher)
+    }
+}
+
+/// What watches a run.
+#[derive(Clone, Debug)]
+pub struct Watch {
+    /// The type of an agent that nobody sees. The asserts of its root are the conditions of the properties; a transition of its
+    /// stops the run.
+    pub ty: TypeId,
+    /// The properties in order.
+    pub properties: Vec<Property>,
+}
+
+/// `property name = formula`.
+#[derive(Clone, Debug)]
+pub struct Property {
+    /// Its name.
+    pub name: String,
+    /// What it claims.
+    pub formula: Formula,
+    /// Where it is named.
+    pub span: Span,
+}
+
+/// A temporal formula. Conditions by number; windows from when to when, s from now.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Formula {
+    /// At all times of a window.
+    Always([f64; 2], Box<Formula>),
+    /// At some time of a window.
+    Eventually([f64; 2], Box<Formula>),
+    /// Until a time of a window at which `goal` holds.
+    Until {
+        /// What holds before.
+        before: usize,
+        /// When the goal is to hold.
+        window: [f64; 2],
+        /// What comes to hold.
+        goal: usize,
+    },
+    /// A condition.
+    Holds(usize),
 }
 
 /// A top-level `param`.

@@ -52,6 +52,7 @@ mod population;
 mod make;
 mod record;
 mod run;
+mod watch;
 mod sets;
 mod consistency;
 mod origin;
@@ -111,7 +112,9 @@ pub struct Checked {
 /// `sources`.
 pub fn check(ast: &Ast, sources: &mut SourceMap, files: &mut dyn Files, settings: &Settings) -> Checked {
     let imports::Imports { trees, diagnostics } = imports::gather(ast, sources, files);
-    let items: Vec<&Item> = trees.iter().chain([ast]).flat_map(|tree| &tree.items).collect();
+    let written = || trees.iter().chain([ast]).flat_map(|tree| &tree.items);
+    let watcher = watch::watcher(written());
+    let items: Vec<&Item> = written().chain(&watcher).collect();
     let mut context = context::Context::new(sources, files, settings);
     context.imports = !diagnostics.is_empty();
     context.diagnostics = diagnostics;
@@ -124,6 +127,7 @@ pub fn check(ast: &Ast, sources: &mut SourceMap, files: &mut dyn Files, settings
     links::check_circles(&mut context);
     presence::check_presence(&mut context);
     initial::initial_values(&mut context);
+    watch::fill(&mut context, &items);
     run::settle(&mut context, &items, settings);
     population::populate(&mut context, &items);
     run::trajectories(&mut context, &items, settings);

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::context::{Context, Global, GlobalKind, Home, Meaning, Member, PairNames, Scope, Value};
-use super::error::{ModeError, NameError, TypeError};
+use super::error::{ModeError, NameError, PropertyError, TypeError};
 use super::ir::{Destination, ExprKind, Inside, ModeId, TypeId};
 use super::suggest::closest;
 use super::types::Ty;
@@ -75,6 +75,10 @@ impl<'a> Context<'a> {
             ("false", _) => self.number(0.0, Ty::Bool, span),
             ("none", _) => self.push(ExprKind::NoAgent, Ty::Nobody, span),
             ("time", _) => self.push(ExprKind::Time, Ty::Real, span),
+            ("self", Home::Agent(ty, _)) if self.is_watcher(ty) => {
+                self.report(PropertyError::NoSelf { span });
+                self.wrong(span)
+            }
             ("self", Home::Agent(ty, _) | Home::Initial(ty)) => {
                 self.push(ExprKind::SelfAgent, Ty::Agent(ty), span)
             }

@@ -110,8 +110,7 @@ impl<'a> Context<'a> {
                     self.model.run.until = Some(value);
                 }
             }
-            RunSettingKind::StopWhen(_) => self.refuse("`stop when` settings", item.span),
-            RunSettingKind::Record { .. } => {}
+            RunSettingKind::StopWhen(_) | RunSettingKind::Record { .. } => {}
             RunSettingKind::Output { name, file } if name.text == "events" => {
                 self.only_once("events", item.span, set);
                 self.file_name(file);
@@ -257,7 +256,7 @@ impl<'a> Context<'a> {
 
     fn record_of_everything(&mut self) -> Option<Record> {
         let mut choice = self.nothing_chosen();
-        for ty in self.model.types.indices() {
+        for ty in self.model.visible_types() {
             self.choose_type(ty, &mut choice);
         }
         self.chosen(choice, None, None, Span::default())

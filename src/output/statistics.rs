@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 
 use super::diagnostic_json::diagnostic_json;
 use super::report::Report;
-use crate::runtime::observe::{End, FalseAssert};
+use crate::runtime::observe::{End, FalseAssert, Verdict};
 
 /// The statistics, one object over several lines with a line end. `until` is null where only a `stop` ends the run.
 pub fn statistics(report: &Report<'_>) -> String {
@@ -54,6 +54,7 @@ pub fn statistics(report: &Report<'_>) -> String {
         "run_seconds": report.run_seconds,
         "version": env!("CARGO_PKG_VERSION"),
     });
+    value["properties"] = outcome.verdicts.iter().map(property).collect();
     value["busiest_agents"] = counts(report.busiest);
     value["compile_parts"] = parts(report.compile_parts);
     value["writing_seconds"] = json!(report.writing_seconds);
@@ -65,8 +66,11 @@ pub fn statistics(report: &Report<'_>) -> String {
 fn end(end: &End, report: &Report<'_>) -> Value {
     match end {
         End::Until => json!({ "kind": "until" }),
-        End::Stop { reason, agent, by } => {
+        End::Stop { reason, by: Some((agent, by)) } => {
             json!({ "kind": "stop", "reason": reason, "agent": report.cast.agent(*agent), "by": by })
+        }
+        End::Stop { reason, by: None } => {
+            json!({ "kind": "stop", "reason": reason, "agent": null, "by": "stop when" })
         }
         End::Interrupted => json!({ "kind": "interrupted" }),
         End::Error(diagnostic) => {
@@ -85,6 +89,18 @@ fn false_assert(claim: &FalseAssert, report: &Report<'_>) -> Value {
         "time": claim.time,
         "agent": report.cast.agent(claim.agent),
         "count": claim.count,
+    })
+}
+
+/// A margin that is not finite is null.
+fn property(verdict: &Verdict) -> Value {
+    let agents = verdict.agents.iter().map(|(name, agent)| (name.clone(), json!(agent)));
+    json!({
+        "name": verdict.name,
+        "holds": verdict.holds,
+        "margin": verdict.margin.is_finite().then_some(verdict.margin),
+        "time": verdict.time,
+        "agents": Value::Object(agents.collect::<Map<_, _>>()),
     })
 }
 

@@ -30,6 +30,7 @@ pub fn summary(report: &Report<'_>) -> String {
     busiest(&mut text, report);
     guards(&mut text, report);
     claims(&mut text, report);
+    properties(&mut text, report);
     time(&mut text, report);
     if !report.files.is_empty() {
         line(&mut text, format_args!("  wrote      {}", report.files.join(", ")));
@@ -53,10 +54,10 @@ fn ending(report: &Report<'_>) -> String {
     let time = number(report.outcome.time);
     match &report.outcome.end {
         End::Until => format!("ended at t = {time} s"),
-        End::Stop { reason, agent, by } => {
-            let agent = report.cast.agent(*agent);
+        End::Stop { reason, by } => {
+            let by = by.as_ref().map(|(agent, by)| format!("{by} of {}", report.cast.agent(*agent)));
             let why = reason.as_ref().map(|reason| format!(": {reason}")).unwrap_or_default();
-            format!("stopped at t = {time} s by {by} of {agent}{why}")
+            format!("stopped at t = {time} s by {}{why}", by.unwrap_or_else(|| "`stop when`".into()))
         }
         End::Interrupted => format!("interrupted at t = {time} s"),
         End::Error(diagnostic) => format!("stopped in error at t = {time} s ({})", diagnostic.code),
@@ -111,6 +112,17 @@ fn claims(text: &mut String, report: &Report<'_>) {
     if n > 0 {
         let times: u64 = report.outcome.false_asserts.iter().map(|claim| claim.count).sum();
         line(text, format_args!("  asserts    {} false, {}", grouped(n), counted(times, "time")));
+    }
+}
+
+/// A line for each property: whether it holds, by how much, when and for whom.
+fn properties(text: &mut String, report: &Report<'_>) {
+    let verdicts = &report.outcome.verdicts;
+    let width = verdicts.iter().map(|verdict| verdict.name.chars().count()).max().unwrap_or(0);
+    for (k, verdict) in verdicts.iter().enumerate() {
+        let head = if k == 0 { "properties" } else { "" };
+        let (word, name) = (if verdict.holds { "holds" } else { "FALSE" }, &verdict.name);
+        line(text, format_args!("  {head:10} {name:width$}  {word}  {}", verdict.told()));
     }
 }
 

@@ -200,6 +200,7 @@ fn outcome(end: End) -> Outcome {
             transitions: vec![("Car.left".into(), 2), ("Car.right".into(), 0), ("Bump.pair".into(), 5)],
             ..Stats::default()
         },
+        verdicts: Vec::new(),
         false_asserts: vec![FalseAssert {
             span: Default::default(),
             message: Some("rear-end collision".into()),
@@ -279,7 +280,7 @@ fn statistics_have_the_promised_keys() {
 #[test]
 fn every_end_is_told() {
     let cast = cast();
-    let stop = End::Stop { reason: Some("all home".into()), agent: who(1), by: "Car.home".into() };
+    let stop = End::Stop { reason: Some("all home".into()), by: Some((who(1), "Car.home".into())) };
     let ends = [
         (End::Until, "ended at t = 12.5 s"),
         (stop, "stopped at t = 12.5 s by Car.home of cars[0]: all home"),

@@ -115,7 +115,7 @@ impl<'p, 'o> Clocks<'p, 'o> {
     /// Everything between two steps: the end, samples, events.
     pub fn between_steps(&mut self) -> Result<Turn, Failure> {
         if let Some(stop) = self.engine.stop.take() {
-            return Ok(Turn::End(End::Stop { reason: stop.reason, agent: stop.agent, by: stop.by }));
+            return Ok(Turn::End(stop.end()));
         }
         let cover = self.engine.cover().min(self.engine.time_end);
         self.rounds += 1;

@@ -28,6 +28,7 @@ use crate::runtime::record::Recorder;
 use crate::runtime::repetition::Repetitions;
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::{MethodName, Methods};
+use crate::runtime::verdicts::Monitors;
 
 /// A time at which something named by a number is due; void if the version is not that of the thing any more.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -168,6 +169,8 @@ pub struct Engine<'p, 'o> {
     pub n_undecided: u64,
     /// Asserts that were false.
     pub false_asserts: Vec<FalseAssert>,
+    /// What is known of the properties.
+    pub monitors: Monitors<'p>,
     /// Remarks, each once.
     pub warnings: Vec<Diagnostic>,
     /// A `stop` action of this instant.
@@ -185,6 +188,13 @@ pub struct StopRequest {
     pub agent: Who,
     /// The label of the transition or the path of the mode.
     pub by: String,
+}
+
+impl StopRequest {
+    /// The end of the run.
+    pub fn end(self) -> End {
+        End::Stop { reason: self.reason, by: self.agent.is_visible().then_some((self.agent, self.by)) }
+    }
 }
 
 impl<'p, 'o> Engine<'p, 'o> {
@@ -230,6 +240,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             notes: observer.wants_reasons().then(|| Box::new(Notes::new(&agents))),
             firings: vec![0; guards.definitions.len()],
             events_of_type: vec![0; program.types.len()],
+            monitors: Monitors::new(program, &guards),
             agents,
             guards,
             observer,
@@ -254,7 +265,7 @@ impl<'p, 'o> Engine<'p, 'o> {
     pub fn tell_last(&mut self) -> Result<(), Failure> {
         self.tell_undecided()?;
         let time = self.present.time;
-        for agent in self.agents.living() {
+        for agent in self.agents.visible() {
             self.present.make(&self.agents, &[agent], Depth::States);
             let row = &self.agents.agents[agent];
             let system = &self.program.types[row.ty];
@@ -294,7 +305,9 @@ impl<'p, 'o> Engine<'p, 'o> {
     /// What the run came to.
     pub fn outcome(self, end: End) -> Outcome {
         let counts = &self.stepper.counts;
-        let types = self.program.types.iter().enumerate().map(|(ty, system)| TypeStats {
+        let hidden = self.program.watcher();
+        let types = self.program.types.iter().enumerate().filter(|(ty, _)| Some(*ty) != hidden);
+        let types = types.map(|(ty, system)| TypeStats {
             name: system.name.clone(),
             agents: self.agents.of_type[ty].len() as u64,
             created: self.agents.turnover[ty][0],
@@ -305,6 +318,7 @@ impl<'p, 'o> Engine<'p, 'o> {
         let labels =
             self.guards.definitions.iter().zip(&self.firings).filter_map(|(definition, &firings)| {
                 match definition.origin {
+                    Origin::Transition(_) if Some(definition.ty) == hidden => None,
                     Origin::Transition(transition) => Some((transition.label.clone(), firings)),
                     Origin::Pair(pair) => Some((pair.transition.label.clone(), firings)),
                     Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => None,
@@ -342,6 +356,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             time: self.present.time,
             stats,
             false_asserts: self.false_asserts,
+            verdicts: self.monitors.verdicts(),
             warnings: self.warnings,
         }
     }

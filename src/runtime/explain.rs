@@ -41,6 +41,10 @@ impl Engine<'_, '_> {
 
     /// Tells why an instance fires now.
     pub fn explain(&mut self, candidate: Candidate, micro: usize) -> Result<(), Failure> {
+        let first = self.guards.roots(candidate.instance)[0];
+        if !self.agents.who(first).is_visible() {
+            return Ok(());
+        }
         let Some(mut notes) = self.notes.take() else { return Ok(()) };
         let told = self.explain_by(&mut notes, candidate, micro);
         self.notes = Some(notes);

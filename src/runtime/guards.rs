@@ -6,7 +6,7 @@
 
 use smallvec::SmallVec;
 
-use crate::codegen::program::{Atom, Near, Quantified, Range, Relation, Trigger};
+use crate::codegen::program::{Atom, ClaimKind, ClaimSystem, Near, Quantified, Range, Relation, Trigger};
 use crate::math::Interval;
 use crate::runtime::candidates::Candidates;
 use crate::runtime::definition::{AtomShape, Definition, definitions};
@@ -443,11 +443,17 @@ impl<'p> Guards<'p> {
         (is_whole && !definition.near.is_empty()).then_some(definition.near)
     }
 
-    /// Whether `other` leaves out an agent that an atom instance binds, or nobody has its seat.
+    /// Whether nobody reads the truth of an atom instance: `other` leaves out an agent that it binds, nobody has its seat, or a
+    /// property reads its margin.
     pub fn leaves_out(&self, agents: &Agents<'_>, index: usize) -> bool {
         let roots = self.roots(self.atoms[index].instance);
         let (_, bound) = self.bindings(agents, index);
         let origin = self.definition(self.atoms[index].instance).origin;
+        if let Origin::Claim(ClaimSystem { kind: ClaimKind::Property, .. }) = origin
+            && !self.is_of_filter(index)
+        {
+            return true;
+        }
         // Whom a link leads to is not nearer than itself.
         let led_to =
             if let Origin::Link(update) = origin { agents.linked(roots[0], update.link) } else { ABSENT };

@@ -272,6 +272,9 @@ impl Engine<'_, '_> {
     /// Writes the rows of the event log for one firing.
     fn log(&mut self, ranked: &Ranked, effect: &Effect, micro: usize) -> Result<(), Failure> {
         let instance = ranked.candidate.instance;
+        if !self.agents.who(ranked.slots[0]).is_visible() {
+            return Ok(());
+        }
         let (label, _) = self.label(instance);
         let pair = matches!(self.guards.definition(instance).origin, Origin::Pair(_));
         let time = self.present.time;
@@ -354,7 +357,8 @@ impl Engine<'_, '_> {
     pub fn judge_claims(&mut self, concerned: &[u32]) -> Result<(), Failure> {
         for &instance in concerned {
             let Origin::Claim(claim) = self.guards.definition(instance).origin else { continue };
-            if !self.guards.instances[instance as usize].active {
+            // Properties are judged by their margins, along the way.
+            if claim.kind == ClaimKind::Property || !self.guards.instances[instance as usize].active {
                 continue;
             }
             for index in self.guards.atoms_of(instance) {
@@ -376,7 +380,7 @@ impl Engine<'_, '_> {
                     let label = claim.message.clone().unwrap_or_default();
                     return Err(Reason::NegativeRate { place, label, compared, span: claim.span }.into());
                 }
-                ClaimKind::Assert => {
+                ClaimKind::Assert | ClaimKind::Property => {
                     self.guards.instances[instance as usize].armed = false;
                     match self.false_asserts.iter_mut().find(|known| known.span == claim.span) {
                         Some(known) => known.count += 1,

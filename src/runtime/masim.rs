@@ -38,7 +38,7 @@ impl Engine<'_, '_> {
         let mut rounds: u64 = 0;
         loop {
             if let Some(stop) = self.stop.take() {
-                return Ok(Some(End::Stop { reason: stop.reason, agent: stop.agent, by: stop.by }));
+                return Ok(Some(stop.end()));
             }
             rounds += 1;
             if rounds.is_multiple_of(ROUNDS) {
@@ -55,6 +55,7 @@ impl Engine<'_, '_> {
                 continue;
             }
             let cause = self.next_cause();
+            self.watch_up_to(cover.min(cause));
             let sample = self.recorder.next();
             if sample < cause && sample <= cover {
                 self.recorder.sample(&self.agents, &mut self.present, sample, self.observer)?;

@@ -70,6 +70,9 @@ mod repetition;
 mod mail;
 mod record;
 mod neighbours;
+mod signal;
+mod margins;
+mod verdicts;
 mod engine;
 mod leaders;
 mod point;
@@ -87,6 +90,7 @@ mod foresee;
 mod hot;
 mod hear;
 mod links;
+mod monitors;
 mod instant;
 mod certify;
 mod explain;
@@ -172,6 +176,9 @@ fn coupling(algorithm: Algorithm) -> Coupling {
 
 /// Tells the observer the last state of every agent.
 fn last_words(engine: &mut Engine<'_, '_>, end: Result<End, Failure>) -> End {
+    if let Ok(End::Until | End::Stop { .. }) = end {
+        engine.watch_now();
+    }
     let end = end.unwrap_or_else(end_of);
     engine.tell_last().map_or_else(end_of, |()| end)
 }
@@ -190,6 +197,7 @@ fn stillborn(failure: Failure) -> Outcome {
         time: 0.0,
         stats: Stats::default(),
         false_asserts: Vec::new(),
+        verdicts: Vec::new(),
         warnings: Vec::new(),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use crate::base::{Diagnostic, Span};
+use crate::base::{Diagnostic, Span, number_text};
 pub use crate::codegen::trace::Compared;
 
 /// An agent as outputs know it: one that has been there at t = 0 has a name of its own, the others are called by type and
@@ -13,6 +13,16 @@ pub struct Who {
     pub number: usize,
     /// The number of its type.
     pub ty: usize,
+}
+
+impl Who {
+    /// The number of the agent that only watches the run.
+    pub const HIDDEN: usize = usize::MAX - 1;
+
+    /// Whether outputs know it.
+    pub fn is_visible(self) -> bool {
+        self.number != Self::HIDDEN
+    }
 }
 
 /// Told of a run as it proceeds, in the order of time. An `Err` ends the run (the disk is full, say).
@@ -225,8 +235,43 @@ pub struct Outcome {
     pub stats: Stats,
     /// Asserts that were false, in the order in which they first were.
     pub false_asserts: Vec<FalseAssert>,
+    /// What the properties came to, in order of declaration.
+    pub verdicts: Vec<Verdict>,
     /// Remarks for the user (two interactions on one agent in one instant, ...), each once.
     pub warnings: Vec<Diagnostic>,
+}
+
+/// What a property came to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// Its name.
+    pub name: String,
+    /// Where it is named.
+    pub span: Span,
+    /// Whether it holds.
+    pub holds: bool,
+    /// By how much: the worst margin, or the best of what has to happen once, SI; infinite where nothing is compared.
+    pub margin: f64,
+    /// When that was, s; none if the run did not come to its window.
+    pub time: Option<f64>,
+    /// What quantifiers bind there: the name, and the agent's.
+    pub agents: Vec<(String, String)>,
+}
+
+impl Verdict {
+    /// `margin 0.5 at t = 3 s for c = cars[2]`
+    pub fn told(&self) -> String {
+        let Some(time) = self.time else { return "its window was not reached".into() };
+        let agents: Vec<String> =
+            self.agents.iter().map(|(name, agent)| format!("{name} = {agent}")).collect();
+        let agents = if agents.is_empty() { String::new() } else { format!(" for {}", agents.join(", ")) };
+        let margin = if self.margin.is_finite() {
+            format!("margin {} ", number_text(self.margin))
+        } else {
+            String::new()
+        };
+        format!("{margin}at t = {} s{agents}", number_text(time))
+    }
 }
 
 /// How a run ended.
@@ -238,10 +283,8 @@ pub enum End {
     Stop {
         /// The text given with it.
         reason: Option<String>,
-        /// Which agent.
-        agent: Who,
-        /// The label of the transition or the path of the mode.
-        by: String,
+        /// By which agent, and the label of its transition or the path of its mode; none: by `stop when`.
+        by: Option<(Who, String)>,
     },
     /// The user interrupted it.
     Interrupted,

@@ -142,6 +142,10 @@ impl<'p> Agents<'p> {
                 ahead,
             });
         }
+        if let Some(ty) = program.watcher() {
+            agents.push(watcher(program, ty, agents.len()));
+            of_type[ty].push(agents.len() - 1);
+        }
         let mut linked_from = vec![Vec::new(); agents.len()];
         for (number, instance) in program.population.agents.iter().enumerate() {
             for target in instance.links.iter().flatten() {
@@ -151,7 +155,7 @@ impl<'p> Agents<'p> {
         Self {
             program,
             seats: of_type.clone(),
-            n_numbers: agents.len(),
+            n_numbers: program.population.agents.len(),
             turnover: vec![[0; 2]; program.types.len()],
             free_seats: vec![Vec::new(); program.types.len()],
             free: Vec::new(),
@@ -260,6 +264,13 @@ impl<'p> Agents<'p> {
     pub fn living(&self) -> Vec<usize> {
         let mut all: Vec<usize> = self.of_type.iter().flatten().copied().collect();
         all.sort_unstable_by_key(|&agent| self.agents[agent].number);
+        all
+    }
+
+    /// The same without the one that only watches.
+    pub fn visible(&self) -> Vec<usize> {
+        let mut all = self.living();
+        all.retain(|&agent| self.who(agent).is_visible());
         all
     }
 
@@ -474,6 +485,28 @@ fn is_followed(program: &Program) -> Vec<bool> {
         }
     }
     is_followed
+}
+
+/// The agent that watches, and has nothing.
+fn watcher(program: &Program, ty: usize, place: usize) -> Agent {
+    let system = &program.types[ty];
+    let mode = first(system, 0);
+    let mut aux = vec![0.0; system.layout.n_aux()];
+    (aux[Layout::NUMBER], aux[Layout::MODE]) = (place as f64, mode as f64);
+    Agent {
+        number: Who::HIDDEN,
+        ty,
+        seat: 0,
+        word: None,
+        created: 0,
+        mode,
+        group: 0,
+        states: Vec::new(),
+        aux,
+        draws: Vec::new(),
+        segment: Segment::at(0.0, &[]),
+        ahead: Ahead::default(),
+    }
 }
 
 /// The longest chain of links in any frame of the program.

@@ -454,3 +454,53 @@ fn events_are_explained_where_one_says() {
     expect(&done, 0, &[]);
     assert_eq!(done.out, text, "the summary makes room");
 }
+
+#[test]
+fn a_false_property_has_the_exit_code_of_a_false_claim_and_is_told() {
+    let text = format!(
+        "{BALL}property low = always forall b in Ball: b.x <= 2.5 [m]\nproperty hit = eventually exists b in Ball: b.n >= 1\n"
+    );
+    let folder = folder(&[("ball.hy", &text), ("good.hy", &text.replace("2.5 [m]", "3.5 [m]"))]);
+    let done = hyc(&folder, &["run", "ball.hy", "--stats", "s.json"]);
+    expect(&done, 4, &["HY0521", "the property `low` is false", "margin -0.5 at t = 0 s for b = others[1]"]);
+    assert!(done.out.contains("low  FALSE  margin -0.5"), "{}", done.out);
+    assert!(done.out.contains("hit  holds  margin 0 at t = 0.45"), "{}", done.out);
+    let stats = json(&read(&folder, "s.json"));
+    assert_eq!(
+        (&stats["properties"][0]["holds"], &stats["properties"][1]["holds"]),
+        (&json("false"), &json("true"))
+    );
+    assert_eq!(stats["properties"][0]["agents"]["b"], "others[1]");
+    assert_eq!(stats["types"].as_object().unwrap().len(), 1);
+    expect(&hyc(&folder, &["run", "ball.hy", "--assert", "warn"]), 0, &["HY0521"]);
+    let good = hyc(&folder, &["run", "good.hy"]);
+    assert_eq!((good.code, good.err.as_str()), (0, ""));
+    let paper = hyc(&folder, &["run", "good.hy", "--algorithm", "masim-2004"]);
+    expect(&paper, 2, &["does not watch properties"]);
+}
+
+#[test]
+fn stop_when_is_told_and_its_agent_is_in_no_table() {
+    let text = BALL.replace("until 1 ", "until 1  stop when exists b in Ball: b.x <= 0.5 ");
+    let folder = folder(&[("ball.hy", &text)]);
+    let words = [
+        "run",
+        "ball.hy",
+        "--stats",
+        "s.json",
+        "--final",
+        "last.csv",
+        "--record",
+        "way.csv",
+        "--explain-events=why.txt",
+    ];
+    let done = hyc(&folder, &words);
+    expect(&done, 0, &[]);
+    assert!(done.out.contains("stopped at t = 0.319") && done.out.contains("by `stop when`"), "{}", done.out);
+    let end = json(&read(&folder, "s.json"))["end"].clone();
+    assert_eq!((&end["kind"], &end["by"]), (&Value::from("stop"), &Value::from("stop when")));
+    assert_eq!(read(&folder, "last.csv").lines().count(), 4);
+    for file in ["last.csv", "way.csv", "events.csv", "why.txt"] {
+        assert!(!read(&folder, file).contains("run"), "{}", read(&folder, file));
+    }
+}

@@ -114,7 +114,15 @@ fn leaves(graph: &mut Graph, dice: &mut Dice) -> Vec<NodeId> {
 /// A system without agents.
 pub fn bare(graph: Graph, functions: Arena<Function>) -> System {
     let (types, interactions) = (Vec::new(), Vec::new());
-    System { graph, functions, types, interactions, population: Population::default(), run: Run::default() }
+    System {
+        graph,
+        functions,
+        types,
+        interactions,
+        population: Population::default(),
+        run: Run::default(),
+        watch: None,
+    }
 }
 
 /// A system of one agent type with one mode, whose rates are function 0.

@@ -30,6 +30,9 @@ const STEPS_MAX: u64 = 100_000;
 /// The code of a false assert: the run goes on, so no floor returns it.
 const FALSE_ASSERT: &str = "HY0590";
 
+/// That of a false property, which no floor returns either.
+const FALSE_PROPERTY: &str = "HY0521";
+
 /// The examples of an entry.
 struct Example {
     bad: String,
@@ -139,6 +142,10 @@ fn simulate(system: calculus::system::System, limits: &Limits) -> Vec<Diagnostic
     found.extend(
         claims.map(|claim| Diagnostic::warning(FALSE_ASSERT, "an assert was false").label(claim.span, "")),
     );
+    let properties = outcome.verdicts.iter().filter(|verdict| !verdict.holds);
+    found.extend(properties.map(|verdict| {
+        Diagnostic::warning(FALSE_PROPERTY, "a property is false").label(verdict.span, verdict.told())
+    }));
     match outcome.end {
         End::Error(diagnostic) => found.push(*diagnostic),
         End::Until | End::Stop { .. } | End::Interrupted | End::Output(_) => {}

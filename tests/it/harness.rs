@@ -14,7 +14,7 @@ use hyc::runtime::Algorithm;
 use hyc::runtime::limits::Limits;
 use hyc::runtime::observe::{
     Cause, Cell, End, Explanation, FalseAssert, Last, Observer, Outcome, Row, ShownComparison, Stats,
-    Undecided, Who,
+    Undecided, Verdict, Who,
 };
 use hyc::runtime::paper::Form;
 
@@ -99,6 +99,7 @@ pub struct Run {
     pub time: f64,
     pub stats: Stats,
     pub false_asserts: Vec<FalseAssert>,
+    pub verdicts: Vec<Verdict>,
     pub warnings: Vec<Diagnostic>,
     pub sources: SourceMap,
 }
@@ -424,7 +425,9 @@ impl Recorder {
     fn run(self, outcome: Outcome, sources: SourceMap) -> Run {
         let end = match outcome.end {
             End::Until => Ended::Until,
-            End::Stop { reason, by, .. } => Ended::Stop { reason, by },
+            End::Stop { reason, by } => {
+                Ended::Stop { reason, by: by.map_or_else(|| "stop when".into(), |(_, by)| by) }
+            }
             End::Error(found) => Ended::Error(*found),
             End::Interrupted => panic!("nobody interrupted the run"),
             End::Output(error) => panic!("the recorder never fails: {error}"),
@@ -439,6 +442,7 @@ impl Recorder {
             time: outcome.time,
             stats: outcome.stats,
             false_asserts: outcome.false_asserts,
+            verdicts: outcome.verdicts,
             warnings: outcome.warnings,
             sources,
         }
@@ -606,7 +610,11 @@ impl Run {
                 let bits: Vec<u64> = sample.cells.iter().map(|value| value.to_bits()).collect();
                 let _ = writeln!(text, "{:016x} {sample:?} {bits:x?}", sample.time.to_bits());
             }
-            let _ = writeln!(text, "{:?}\n{:?}\n{:?}", run.stats, run.false_asserts, run.warnings);
+            let _ = writeln!(
+                text,
+                "{:?}\n{:?}\n{:?}\n{:?}",
+                run.stats, run.false_asserts, run.verdicts, run.warnings
+            );
             text
         };
         let (ours, theirs) = (all(self), all(other));

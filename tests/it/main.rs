@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod formatting;
+mod properties;
 mod syntax;
 mod model;
 mod calculus;

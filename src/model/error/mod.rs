@@ -7,6 +7,7 @@ pub(super) mod modes;
 pub(super) mod events;
 pub(super) mod data;
 pub(super) mod imports;
+pub(super) mod properties;
 
 pub(super) use data::{FileError, LimitError, OverrideError, RunError, SystemError, TableError, ValueError};
 pub(super) use dimensions::{DimensionError, Evidence, Side};
@@ -14,6 +15,7 @@ pub(super) use events::EventError;
 pub(super) use imports::ImportError;
 pub(super) use modes::{ActionError, ModeError};
 pub(super) use names::NameError;
+pub(super) use properties::PropertyError;
 pub(super) use types::TypeError;
 
 use crate::base::{Diagnostic, Span};

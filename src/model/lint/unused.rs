@@ -70,7 +70,7 @@ pub(super) fn members(context: &Context, found: &mut Vec<Warning>) {
     let mut made: FxHashSet<TypeId> = model.population.blocks.iter().map(|block| block.ty).collect();
     made.extend(model.creations().iter().map(|create| create.ty));
     let (read, written) = (read(model), written(model));
-    for (id, ty) in model.types.iter_enumerated() {
+    for (id, ty) in model.visible_types().map(|id| (id, &model.types[id])) {
         if !made.contains(&id) {
             if !meant(&ty.name) {
                 found.push(Warning::NoAgents { name: ty.name.clone(), span: ty.span });

@@ -1,1 +1,1 @@
-property p = always time >= 0
+property p = always time >= 0 until time >= 1

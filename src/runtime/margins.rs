@@ -1,0 +1,298 @@
+//! Margins of conditions: by how much a condition of a property holds, at a time and over a stretch of time.
+//!
+//! A comparison has its margin (minus its g), `and` and `forall` the least of theirs, `or` and `exists` the greatest; what is no
+//! comparison of numbers holds, or fails, by an infinite margin. (G. E. Fainekos and G. J. Pappas, Theoretical Computer
+//! Science 410, 2009.) Between events a margin is a function of the agents' dense output; its bounds over a stretch
+//! come from bounds of g, g' and g'' there.
+
+use crate::codegen::program::{Atom, Condition, Guard, Quantified, Relation};
+use crate::math::Interval;
+use crate::runtime::detect::{AtomCurve, CurveRows};
+use crate::runtime::guards::{Guards, allowed};
+use crate::runtime::population::{ABSENT, Agents, Slots};
+use crate::runtime::present::Present;
+use crate::runtime::solve::roots::Curve;
+use crate::runtime::solve::time_resolution;
+use crate::runtime::truth::{self, Side, Truths};
+
+/// When a margin is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum When {
+    /// At a time that the agents' last segments cover.
+    Along(f64),
+    /// At the present instant, after its micro-steps.
+    Now,
+}
+
+/// A margin at a time.
+#[derive(Clone, Debug)]
+pub struct Spot {
+    /// The margin.
+    pub value: f64,
+    /// Its rate.
+    pub slope: f64,
+    /// Whether a margin of zero is enough: the comparison that decides is `<=` or `>=`.
+    pub closed: bool,
+    /// The number of the comparison that decides; none if none does.
+    atom: Option<usize>,
+    /// The slots with whoever quantifiers bind there.
+    pub slots: Slots,
+}
+
+/// A margin over a stretch of time.
+#[derive(Clone, Copy, Debug)]
+pub struct Bound {
+    /// Contains all its values.
+    pub value: Interval,
+    /// Contains its rates, of all comparisons that may decide.
+    pub slope: Interval,
+}
+
+/// Which of several conditions decides.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Pick {
+    Least,
+    Greatest,
+}
+
+impl Pick {
+    fn prefers(self, value: f64, to: f64) -> bool {
+        match self {
+            Pick::Least => value < to,
+            Pick::Greatest => value > to,
+        }
+    }
+
+    /// The margin of nothing.
+    fn neutral(self) -> f64 {
+        match self {
+            Pick::Least => f64::INFINITY,
+            Pick::Greatest => f64::NEG_INFINITY,
+        }
+    }
+}
+
+/// The margins of one condition.
+pub struct Margins<'a, 'p> {
+    /// The agents.
+    pub agents: &'a Agents<'p>,
+    /// The guards.
+    pub guards: &'a Guards<'p>,
+    /// Rows at the present instant.
+    pub present: &'a mut Present,
+    /// Scratch.
+    pub rows: &'a mut CurveRows,
+    /// The instance of the condition.
+    pub instance: u32,
+    /// The condition.
+    pub guard: &'p Guard,
+}
+
+impl<'p> Margins<'_, 'p> {
+    fn slots(&self) -> Slots {
+        self.guards.slots(self.agents, self.instance)
+    }
+
+    /// The margin at a time, and who decides it.
+    pub fn at(&mut self, when: When) -> Spot {
+        let guard = self.guard;
+        let slots = self.slots();
+        self.spot(&guard.condition, &slots, when)
+    }
+
+    /// The margin over [s, e].
+    pub fn over(&mut self, s: f64, e: f64) -> Bound {
+        let guard = self.guard;
+        let slots = self.slots();
+        self.bound(&guard.condition, &slots, s, e)
+    }
+
+    /// How far from zero a margin may be and still count as zero: by rounding, and by the width to which times are known.
+    pub fn slack(&mut self, spot: &Spot, when: When) -> f64 {
+        let (Some(atom), When::Along(t)) = (spot.atom, when) else { return 0.0 };
+        let atom = &self.guard.atoms[atom];
+        let rounding = self.curve(atom, &spot.slots, |curve| curve.jet_range(t, t)[0].width());
+        let rounding = if rounding.is_finite() { rounding } else { 0.0 };
+        rounding + spot.slope.abs() * time_resolution(t)
+    }
+
+    /// The names of the agents that quantifiers bind where a margin is decided, outermost first.
+    pub fn bound_agents(&self, spot: &Spot) -> Vec<(String, String)> {
+        let mut found = Vec::new();
+        self.collect(&self.guard.condition, spot, &mut found);
+        found
+    }
+
+    fn collect(&self, condition: &Condition, spot: &Spot, found: &mut Vec<(String, String)>) {
+        match condition {
+            Condition::Exists(quantified) | Condition::Forall(quantified) => {
+                let frame = self.guards.definition(self.instance).frame;
+                let agent = spot.slots[quantified.slot];
+                if agent != ABSENT {
+                    found.push((frame.slots[quantified.slot].name().to_string(), self.agents.name(agent)));
+                }
+                self.collect(&quantified.body, spot, found);
+            }
+            Condition::And(all) | Condition::Or(all) => {
+                all.iter().for_each(|condition| self.collect(condition, spot, found));
+            }
+            Condition::Constant(_) | Condition::Discrete(_) | Condition::Atom(_) | Condition::Rising(..) => {}
+        }
+    }
+
+    fn spot(&mut self, condition: &Condition, slots: &Slots, when: When) -> Spot {
+        match condition {
+            Condition::Constant(truth) => settled(*truth, slots),
+            Condition::Discrete(_) | Condition::Rising(..) => {
+                let truth = self.truths().part(self.instance, condition, &mut slots.clone());
+                settled(truth, slots)
+            }
+            Condition::Atom(atom) => self.comparison(*atom, slots, when),
+            Condition::And(all) => self.pick(Pick::Least, all, slots, when),
+            Condition::Or(all) => self.pick(Pick::Greatest, all, slots, when),
+            Condition::Forall(quantified) => self.pick_agent(Pick::Least, quantified, slots, when),
+            Condition::Exists(quantified) => self.pick_agent(Pick::Greatest, quantified, slots, when),
+        }
+    }
+
+    fn pick(&mut self, pick: Pick, all: &[Condition], slots: &Slots, when: When) -> Spot {
+        let mut best: Option<Spot> = None;
+        for condition in all {
+            let spot = self.spot(condition, slots, when);
+            if best.as_ref().is_none_or(|best| pick.prefers(spot.value, best.value)) {
+                best = Some(spot);
+            }
+        }
+        best.unwrap_or_else(|| settled(pick == Pick::Least, slots))
+    }
+
+    fn pick_agent(&mut self, pick: Pick, quantified: &Quantified, slots: &Slots, when: When) -> Spot {
+        let mut best: Option<Spot> = None;
+        for bound in self.bindings(quantified, slots) {
+            let spot = self.spot(&quantified.body, &bound, when);
+            if best.as_ref().is_none_or(|best| pick.prefers(spot.value, best.value)) {
+                best = Some(spot);
+            }
+        }
+        best.unwrap_or_else(|| settled(pick == Pick::Least, slots))
+    }
+
+    /// The slots with each agent of a quantifier's range.
+    fn bindings(&self, quantified: &Quantified, slots: &Slots) -> Vec<Slots> {
+        let roots = self.guards.roots(self.instance);
+        let frame = self.guards.definition(self.instance).frame;
+        let range = self.agents.of_type[quantified.ty].iter().copied();
+        let bind = |agent: usize| {
+            let mut bound = slots.clone();
+            bound[quantified.slot] = agent;
+            self.agents.follow_links(frame, &mut bound);
+            bound
+        };
+        range.filter(|&agent| allowed(quantified, &roots, agent)).map(bind).collect()
+    }
+
+    fn comparison(&mut self, number: usize, slots: &Slots, when: When) -> Spot {
+        let atom = &self.guard.atoms[number];
+        let [g, rate, _] = match when {
+            When::Along(t) => self.curve(atom, slots, |curve| curve.jet(t)),
+            When::Now => [self.now(atom, slots), 0.0, 0.0],
+        };
+        if g.is_nan() {
+            // A comparison with an agent that is not there is false.
+            return settled(false, slots);
+        }
+        let closed = atom.relation == Relation::NonPositive;
+        Spot { value: -g, slope: -rate, closed, atom: Some(number), slots: slots.clone() }
+    }
+
+    fn now(&mut self, atom: &Atom, slots: &Slots) -> f64 {
+        let kernel = self.agents.program.kernel(atom.value);
+        let folds = self.truths().gather(self.instance, kernel, slots, Side::After);
+        truth::evaluate(self.agents, self.present, kernel, slots, &folds)
+    }
+
+    fn curve<T>(&mut self, atom: &Atom, slots: &Slots, look: impl FnOnce(&mut AtomCurve<'_, '_>) -> T) -> T {
+        let kernel = self.agents.program.kernel(atom.value);
+        let folds = self.truths().gather(self.instance, kernel, slots, Side::After);
+        look(&mut AtomCurve::new(self.agents, atom, slots, &folds, self.rows))
+    }
+
+    fn truths(&self) -> Truths<'_, 'p> {
+        Truths { agents: self.agents, guards: self.guards, present: self.present }
+    }
+
+    fn bound(&mut self, condition: &Condition, slots: &Slots, s: f64, e: f64) -> Bound {
+        match condition {
+            Condition::Atom(atom) => self.comparison_bound(*atom, slots, s, e),
+            Condition::And(all) => {
+                let all = all.iter().map(|condition| self.bound(condition, slots, s, e)).collect::<Vec<_>>();
+                together(Pick::Least, &all)
+            }
+            Condition::Or(all) => {
+                let all = all.iter().map(|condition| self.bound(condition, slots, s, e)).collect::<Vec<_>>();
+                together(Pick::Greatest, &all)
+            }
+            Condition::Forall(quantified) | Condition::Exists(quantified) => {
+                let bindings = self.bindings(quantified, slots).into_iter();
+                let all: Vec<Bound> =
+                    bindings.map(|bound| self.bound(&quantified.body, &bound, s, e)).collect();
+                let forall = matches!(condition, Condition::Forall(_));
+                together(if forall { Pick::Least } else { Pick::Greatest }, &all)
+            }
+            Condition::Constant(_) | Condition::Discrete(_) | Condition::Rising(..) => {
+                let value = self.spot(condition, slots, When::Now).value;
+                Bound { value: Interval { lo: value, hi: value }, slope: Interval::ZERO }
+            }
+        }
+    }
+
+    /// From the bounds of g, and from its value, rate and second rate in the middle with the bounds of its rates.
+    fn comparison_bound(&mut self, number: usize, slots: &Slots, s: f64, e: f64) -> Bound {
+        let atom = &self.guard.atoms[number];
+        let middle = 0.5 * (s + e);
+        let (jet, [g, rate, second]) =
+            self.curve(atom, slots, |curve| (curve.jet(middle), curve.jet_range(s, e)));
+        if jet[0].is_nan() && atom.slots.iter().any(|&slot| slots[slot] == ABSENT) {
+            let value = Interval { lo: f64::NEG_INFINITY, hi: f64::NEG_INFINITY };
+            return Bound { value, slope: Interval::ZERO };
+        }
+        let r = 0.5 * (e - s);
+        let rounding = 4.0 * f64::EPSILON * jet[0].abs();
+        let mut value = g;
+        let size = |bound: Interval| bound.lo.abs().max(bound.hi.abs());
+        for room in [size(rate) * r, jet[1].abs() * r + 0.5 * size(second) * r * r] {
+            let room = room + rounding;
+            if room.is_finite() && jet[0].is_finite() {
+                value = Interval { lo: value.lo.max(jet[0] - room), hi: value.hi.min(jet[0] + room) };
+            }
+        }
+        if value.lo > value.hi {
+            value = g;
+        }
+        Bound { value: negative(value), slope: negative(rate) }
+    }
+}
+
+fn negative(x: Interval) -> Interval {
+    Interval { lo: -x.hi, hi: -x.lo }
+}
+
+/// The margin of what is no comparison.
+fn settled(truth: bool, slots: &Slots) -> Spot {
+    let value = if truth { f64::INFINITY } else { f64::NEG_INFINITY };
+    Spot { value, slope: 0.0, closed: true, atom: None, slots: slots.clone() }
+}
+
+/// The bound of the least, or greatest, of several.
+fn together(pick: Pick, all: &[Bound]) -> Bound {
+    let neutral = Interval { lo: pick.neutral(), hi: pick.neutral() };
+    let value = all.iter().fold(neutral, |value, bound| match pick {
+        Pick::Least => Interval { lo: value.lo.min(bound.value.lo), hi: value.hi.min(bound.value.hi) },
+        Pick::Greatest => Interval { lo: value.lo.max(bound.value.lo), hi: value.hi.max(bound.value.hi) },
+    });
+    let may_decide = |bound: &&Bound| bound.value.lo <= value.hi && bound.value.hi >= value.lo;
+    let slopes = all.iter().filter(may_decide).map(|bound| bound.slope);
+    let slope =
+        slopes.reduce(|hull, slope| Interval { lo: hull.lo.min(slope.lo), hi: hull.hi.max(slope.hi) });
+    Bound { value, slope: slope.unwrap_or(Interval::ZERO) }
+}

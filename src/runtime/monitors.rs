@@ -1,0 +1,269 @@
+//! Properties: their worst or best margins so far, from stretch to stretch of the agents' dense output.
+//!
+//! Each stretch ends where all agents are known and nothing happens before; within it a condition's margin is continuous but
+//! for its own jumps. Its extremes are found by branch and bound: pieces that cannot hold a better value are left out, pieces on
+//! which the rate keeps its sign have it at an end. So nothing is sampled, and nothing of the run is changed.
+
+use crate::codegen::program::ClaimSystem;
+use crate::runtime::engine::Engine;
+use crate::runtime::margins::{Margins, When};
+use crate::runtime::signal::{Origin, Piece};
+use crate::runtime::solve::time_resolution;
+use crate::runtime::verdicts::{ACCURACY, Decider, Extreme, Found, Trace, Watched};
+
+/// After so many pieces of one stretch the best value so far is taken.
+const PIECES_MAX: usize = 100_000;
+
+/// What is not better than the best by this share of it is not looked for.
+const SHARE: f64 = 1e-14;
+
+impl<'p> Engine<'p, '_> {
+    /// Watches the properties on the way to `time`, up to which all agents are known and nothing happens.
+    pub fn watch_up_to(&mut self, time: f64) {
+        let from = self.monitors.done;
+        if self.monitors.properties.is_empty() || time <= from || time == f64::INFINITY {
+            return;
+        }
+        let mut monitors = std::mem::take(&mut self.monitors);
+        for (_, watched) in &mut monitors.properties {
+            self.watch(&monitors.conditions, watched, When::Along(from), (from, time));
+        }
+        monitors.done = time;
+        self.monitors = monitors;
+    }
+
+    /// Watches the properties at the present instant, after its micro-steps.
+    pub fn watch_now(&mut self) {
+        let time = self.present.time;
+        let mut monitors = std::mem::take(&mut self.monitors);
+        for (_, watched) in &mut monitors.properties {
+            self.watch(&monitors.conditions, watched, When::Now, (time, time));
+        }
+        self.monitors = monitors;
+    }
+
+    fn watch(
+        &mut self,
+        conditions: &[(u32, &'p ClaimSystem)],
+        watched: &mut Watched,
+        when: When,
+        (s, e): (f64, f64),
+    ) {
+        match watched {
+            Watched::Extreme { extreme, condition, window, found } => {
+                let (s, e) = (s.max(window[0]), e.min(window[1]));
+                let mut margins = self.margins(conditions[*condition]);
+                match when {
+                    When::Now if s <= e => consider(&mut margins, *extreme, s, When::Now, found),
+                    When::Along(_) if s <= e => search(&mut margins, *extreme, (s, e), found),
+                    When::Now | When::Along(_) => {}
+                }
+            }
+            Watched::Nested { operators, condition, trace } => {
+                let e = e.min(operators.iter().map(|(_, window)| window[1]).sum());
+                if s < e {
+                    follow(&mut self.margins(conditions[*condition]), (s, e), trace);
+                }
+            }
+            Watched::Until { before, goal, window, least, found } => {
+                let pair = [conditions[*before], conditions[*goal]];
+                let e = e.min(window[1]);
+                if s > e {
+                    return;
+                }
+                if when == When::Now {
+                    self.attain(pair, s, When::Now, window[0], (least, found));
+                    return;
+                }
+                if s < window[0] {
+                    let until = e.min(window[0]);
+                    search(&mut self.margins(pair[0]), Extreme::Least, (s, until), least);
+                }
+                if e >= window[0] {
+                    self.attain_within(pair, (s.max(window[0]), e), least, found);
+                }
+            }
+        }
+    }
+
+    fn margins(&mut self, (instance, claim): (u32, &'p ClaimSystem)) -> Margins<'_, 'p> {
+        Margins {
+            agents: &self.agents,
+            guards: &self.guards,
+            present: &mut self.present,
+            rows: &mut self.curves,
+            instance,
+            guard: &claim.violation,
+        }
+    }
+
+    /// `before` until `goal`, if the goal is taken at `t`.
+    fn attain(
+        &mut self,
+        [before, goal]: [(u32, &'p ClaimSystem); 2],
+        t: f64,
+        when: When,
+        from: f64,
+        (least, found): (&mut Option<Found>, &mut Option<Found>),
+    ) {
+        let mut margins = self.margins(goal);
+        let spot = margins.at(when);
+        let goal = Found::new(&mut margins, &spot, t, when);
+        let here = least.as_ref().filter(|least| least.value < goal.value).unwrap_or(&goal);
+        if t >= from && found.as_ref().is_none_or(|found| here.value > found.value) {
+            *found = Some(here.clone());
+        }
+        if when == When::Now {
+            consider(&mut self.margins(before), Extreme::Least, t, when, least);
+        }
+    }
+
+    /// The greatest of min(goal, least of `before` so far) over [s, e]: from left to right, what cannot be greater left out.
+    fn attain_within(
+        &mut self,
+        pair: [(u32, &'p ClaimSystem); 2],
+        (s, e): (f64, f64),
+        least: &mut Option<Found>,
+        found: &mut Option<Found>,
+    ) {
+        let [before, goal] = pair;
+        let mut pieces = vec![(s, e)];
+        let mut looked_at = 0;
+        while let Some((x, y)) = pieces.pop() {
+            looked_at += 1;
+            self.attain(pair, x, When::Along(x), x, (least, found));
+            let best = found.as_ref().map_or(f64::NEG_INFINITY, |found| found.value);
+            let floor = least.as_ref().map_or(f64::INFINITY, |least| least.value);
+            let held = self.margins(before).over(x, y).value;
+            let reached = self.margins(goal).over(x, y).value;
+            let most = reached.hi.min(floor);
+            let lowest = floor.min(held.lo);
+            if most <= best + SHARE * best.abs() || reached.lo >= floor {
+                // Nothing better here; or only `before` counts, which never rises.
+            } else if reached.hi <= lowest || held.lo >= floor {
+                // Only the goal counts, or the least so far.
+                let mut top = None;
+                search(&mut self.margins(goal), Extreme::Greatest, (x, y), &mut top);
+                let top = match (top, &*least) {
+                    (Some(top), Some(least)) if least.value < top.value => Some(least.clone()),
+                    (top, _) => top,
+                };
+                if top.as_ref().is_some_and(|top| top.value > best) {
+                    *found = top;
+                }
+            } else if y - x > time_resolution(y) && looked_at < PIECES_MAX {
+                let middle = 0.5 * (x + y);
+                pieces.extend([(middle, y), (x, middle)]);
+                continue;
+            }
+            search(&mut self.margins(before), Extreme::Least, (x, y), least);
+            self.attain(pair, y, When::Along(y), y, (least, found));
+        }
+    }
+}
+
+/// Whether a value is less than the least so far, by more than rounding.
+fn improves(value: f64, least: f64) -> bool {
+    value < least && (least.is_infinite() || least - value > SHARE * least.abs())
+}
+
+/// Takes the margin at `t` if it is better.
+fn consider(margins: &mut Margins<'_, '_>, extreme: Extreme, t: f64, when: When, found: &mut Option<Found>) {
+    let spot = margins.at(when);
+    let sign = extreme.sign();
+    if found.as_ref().is_none_or(|found| improves(sign * spot.value, sign * found.value)) {
+        *found = Some(Found::new(margins, &spot, t, when));
+    }
+}
+
+/// The extreme of a margin over [s, e], if it is better than what was found before.
+fn search(margins: &mut Margins<'_, '_>, extreme: Extreme, (s, e): (f64, f64), found: &mut Option<Found>) {
+    let sign = extreme.sign();
+    let (mut best, mut time) = (found.as_ref().map_or(f64::INFINITY, |found| sign * found.value), None);
+    let mut look = |margins: &mut Margins<'_, '_>, t: f64, best: &mut f64| {
+        let value = sign * margins.at(When::Along(t)).value;
+        if improves(value, *best) || found.is_none() && time.is_none() {
+            (*best, time) = (value, Some(t));
+        }
+    };
+    look(margins, s, &mut best);
+    look(margins, e, &mut best);
+    let mut pieces = vec![(s, e)];
+    let mut looked_at = 0;
+    while let Some((a, b)) = pieces.pop() {
+        looked_at += 1;
+        let bound = margins.over(a, b);
+        let least = if extreme == Extreme::Least { bound.value.lo } else { -bound.value.hi };
+        let monotone = bound.slope.lo >= 0.0 || bound.slope.hi <= 0.0;
+        if least >= best - SHARE * best.abs() || monotone || b - a <= time_resolution(b) {
+            continue;
+        }
+        if looked_at > PIECES_MAX {
+            break;
+        }
+        let middle = 0.5 * (a + b);
+        look(margins, middle, &mut best);
+        pieces.extend([(middle, b), (a, middle)]);
+    }
+    if let Some(time) = time {
+        let time = settle(margins, sign, time, (s, e));
+        let spot = margins.at(When::Along(time));
+        *found = Some(Found::new(margins, &spot, time, When::Along(time)));
+    }
+}
+
+/// The time of a least value to the last bits: where the rate changes its sign, near `t`, within [s, e].
+fn settle(margins: &mut Margins<'_, '_>, sign: f64, t: f64, (s, e): (f64, f64)) -> f64 {
+    let mut rate = |t: f64| sign * margins.at(When::Along(t)).slope;
+    let mut width = time_resolution(t);
+    while width < e - s {
+        let (mut a, mut b) = ((t - width).max(s), (t + width).min(e));
+        if rate(a) < 0.0 && rate(b) > 0.0 {
+            while b - a > time_resolution(t) {
+                let middle = 0.5 * (a + b);
+                if rate(middle) < 0.0 { a = middle } else { b = middle }
+            }
+            return 0.5 * (a + b);
+        }
+        width *= 4.0;
+        // The value is that of t within rounding: so is that of all times so near, and of no others.
+        if width > 1e-3 * (e - s) {
+            break;
+        }
+    }
+    t
+}
+
+/// Adds the margin over [s, e] to a trace: by cubics through both ends of pieces, halved until each hits it inside, too.
+fn follow(margins: &mut Margins<'_, '_>, (s, e): (f64, f64), trace: &mut Trace) {
+    let mut pending = vec![(s, e)];
+    while let Some((a, b)) = pending.pop() {
+        let spots = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| {
+            let t = a + share * (b - a);
+            (t, margins.at(When::Along(t)))
+        });
+        let [first, .., last] = &spots;
+        let (values, slopes) = ([first.1.value, last.1.value], [first.1.slope, last.1.slope]);
+        let piece = if values[0].is_finite() && values[1].is_finite() {
+            Piece::through(a, b, values, slopes)
+        } else {
+            Piece::constant(a, b, spots[2].1.value, Origin::Later(0.0))
+        };
+        let hits = spots.iter().all(|(t, spot)| {
+            let miss = (piece.at(*t) - spot.value).abs();
+            piece.at(*t) == spot.value || miss <= ACCURACY * spot.value.abs().max(1.0)
+        });
+        if !hits && b - a > time_resolution(b) {
+            let middle = spots[2].0;
+            pending.extend([(middle, b), (a, middle)]);
+            continue;
+        }
+        trace.pieces.push(piece);
+        let spot = &spots[2].1;
+        let decider = Decider { from: a, closed: spot.closed, agents: margins.bound_agents(spot) };
+        let same = |known: &Decider| known.closed == decider.closed && known.agents == decider.agents;
+        if !trace.deciders.last().is_some_and(same) {
+            trace.deciders.push(decider);
+        }
+    }
+}

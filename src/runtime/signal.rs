@@ -1,0 +1,337 @@
+//! Signals: a number at every time, by cubic pieces; and the greatest value of one over a window that moves along.
+//!
+//! The greatest value over [t + c, t + d] is a signal of pieces again: at each t it is the value at an end of the window, or a peak
+//! inside it. So formulas nest, and nothing is sampled: only the pieces of the innermost signal approximate.
+//! (A. Donzé, T. Ferrère, O. Maler, Efficient Robust Monitoring for STL, CAV 2013, with cubics in place of lines.)
+
+use smallvec::SmallVec;
+
+/// Where a value of a signal comes from in the innermost one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Origin {
+    /// From so much later, s.
+    Later(f64),
+    /// From this time, s.
+    At(f64),
+}
+
+impl Origin {
+    /// The time in the innermost signal of the value at `t`.
+    pub fn time(self, t: f64) -> f64 {
+        match self {
+            Origin::Later(shift) => t + shift,
+            Origin::At(time) => time,
+        }
+    }
+}
+
+/// A stretch of a signal: c0 + c1 h + c2 h^2 + c3 h^3, h seconds after its start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// Its start, s.
+    pub start: f64,
+    /// Its end, s.
+    pub end: f64,
+    /// Its coefficients; an infinite c0 stands alone.
+    pub cubic: [f64; 4],
+    /// Where its values come from.
+    pub origin: Origin,
+}
+
+impl Piece {
+    /// The cubic with these values and slopes at its ends.
+    pub fn through(start: f64, end: f64, values: [f64; 2], slopes: [f64; 2]) -> Self {
+        let h = end - start;
+        let rise = (values[1] - values[0]) / h;
+        let square = (3.0 * rise - 2.0 * slopes[0] - slopes[1]) / h;
+        let third = (slopes[0] + slopes[1] - 2.0 * rise) / (h * h);
+        Self { start, end, cubic: [values[0], slopes[0], square, third], origin: Origin::Later(0.0) }
+    }
+
+    /// The same value all along.
+    pub fn constant(start: f64, end: f64, value: f64, origin: Origin) -> Self {
+        Self { start, end, cubic: [value, 0.0, 0.0, 0.0], origin }
+    }
+
+    /// Its value at a time.
+    pub fn at(&self, t: f64) -> f64 {
+        let [c0, c1, c2, c3] = self.cubic;
+        if c0.is_infinite() {
+            return c0;
+        }
+        let h = t - self.start;
+        c0 + h * (c1 + h * (c2 + h * c3))
+    }
+
+    /// The same values so much earlier.
+    fn earlier(&self, shift: f64) -> Self {
+        let origin = match self.origin {
+            Origin::Later(later) => Origin::Later(later + shift),
+            at @ Origin::At(_) => at,
+        };
+        Self { start: self.start - shift, end: self.end - shift, origin, ..*self }
+    }
+
+    /// A part of it.
+    fn part(&self, start: f64, end: f64) -> Self {
+        let [c0, c1, c2, c3] = self.cubic;
+        let h = start - self.start;
+        let cubic = if c0.is_infinite() {
+            self.cubic
+        } else {
+            [self.at(start), c1 + h * (2.0 * c2 + 3.0 * h * c3), c2 + 3.0 * h * c3, c3]
+        };
+        Self { start, end, cubic, origin: self.origin }
+    }
+
+    fn turned(&self) -> Self {
+        Self { cubic: self.cubic.map(|c| -c), ..*self }
+    }
+
+    /// The times within it at which its slope is zero.
+    fn stationary(&self) -> SmallVec<[f64; 2]> {
+        let [c0, c1, c2, c3] = self.cubic;
+        if c0.is_infinite() {
+            return SmallVec::new();
+        }
+        let roots = quadratic_roots(c1, 2.0 * c2, 3.0 * c3);
+        let times = roots.into_iter().map(|h| self.start + h);
+        times.filter(|&t| self.start < t && t < self.end).collect()
+    }
+
+    /// Its parts on which it only rises or only falls.
+    fn monotone(&self) -> impl Iterator<Item = Piece> {
+        let mut ends: SmallVec<[f64; 4]> = SmallVec::from_slice(&[self.start]);
+        ends.extend(self.stationary());
+        ends.push(self.end);
+        let piece = *self;
+        (1..ends.len()).map(move |k| piece.part(ends[k - 1], ends[k]))
+    }
+
+    /// The time and the value of its greatest value; it is monotone.
+    fn top(&self) -> (f64, f64) {
+        let (first, last) = (self.at(self.start), self.at(self.end));
+        if first >= last { (self.start, first) } else { (self.end, last) }
+    }
+}
+
+/// The real roots of a + b x + c x^2, rising.
+fn quadratic_roots(a: f64, b: f64, c: f64) -> SmallVec<[f64; 2]> {
+    let discriminant = b * b - 4.0 * a * c;
+    if c == 0.0 || discriminant < 0.0 {
+        return if c == 0.0 && b != 0.0 { SmallVec::from_slice(&[-a / b]) } else { SmallVec::new() };
+    }
+    // Without cancellation.
+    let q = -0.5 * (b + discriminant.sqrt().copysign(b));
+    let mut roots: SmallVec<[f64; 2]> = SmallVec::new();
+    roots.push(q / c);
+    if q != 0.0 {
+        roots.push(a / q);
+    }
+    roots.sort_by(f64::total_cmp);
+    roots
+}
+
+/// A signal turned upside down.
+pub fn turned(signal: &[Piece]) -> Vec<Piece> {
+    signal.iter().map(Piece::turned).collect()
+}
+
+/// The greatest value over [from, to], and when it is; none where the signal is not.
+pub fn greatest(signal: &[Piece], [from, to]: [f64; 2]) -> Option<(f64, f64, Origin)> {
+    let inside = signal.iter().filter(|piece| piece.end >= from && piece.start <= to);
+    let parts = inside.map(|piece| piece.part(piece.start.max(from), piece.end.min(to)));
+    let tops = parts.flat_map(|part| part.monotone().collect::<Vec<_>>()).map(|part| {
+        let (time, value) = part.top();
+        (time, value, part.origin)
+    });
+    tops.reduce(|best, next| if next.1 > best.1 { next } else { best })
+}
+
+/// The signal of the greatest values over [t + c, t + d]; windows end where the signal does, at the latest.
+pub fn greatest_ahead(signal: &[Piece], [c, d]: [f64; 2]) -> Vec<Piece> {
+    let pieces: Vec<Piece> = signal.iter().flat_map(|piece| piece.monotone().collect::<Vec<_>>()).collect();
+    let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { return Vec::new() };
+    let (begin, end) = (first.start, last.end);
+    if begin > end - c {
+        return Vec::new();
+    }
+    let peaks = Peaks::new(&pieces);
+    let mut breaks: Vec<f64> = pieces
+        .iter()
+        .flat_map(|piece| [piece.start - c, piece.end - c, piece.start - d, piece.end - d])
+        .filter(|&t| t >= begin && t <= end - c)
+        .collect();
+    breaks.extend([begin, end - c]);
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup();
+    let mut ahead = Vec::new();
+    for pair in breaks.windows(2) {
+        let (p, q) = (pair[0], pair[1]);
+        let middle = 0.5 * (p + q);
+        let (left, right) = (holding(&pieces, middle + c), holding(&pieces, (middle + d).min(end)));
+        let mut candidates: SmallVec<[Piece; 4]> = SmallVec::new();
+        candidates.push(pieces[left].earlier(c).part(p, q));
+        if middle + d < end {
+            candidates.push(pieces[right].earlier(d).part(p, q));
+        }
+        let whole = if middle + d < end { left + 1..right } else { left + 1..right + 1 };
+        let mut tops: SmallVec<[(f64, f64, Origin); 3]> = SmallVec::new();
+        tops.extend(peaks.greatest(whole));
+        if left != right || middle + d >= end {
+            tops.push((pieces[left].end, pieces[left].at(pieces[left].end), pieces[left].origin));
+            let right = &pieces[right];
+            let at = if middle + d < end { right.start } else { right.end };
+            tops.push((at, right.at(at), right.origin));
+        }
+        candidates.extend(
+            tops.iter()
+                .map(|&(time, value, origin)| Piece::constant(p, q, value, Origin::At(origin.time(time)))),
+        );
+        envelope(&candidates, p, q, &mut ahead);
+    }
+    ahead
+}
+
+/// The number of the piece that holds a time.
+fn holding(pieces: &[Piece], t: f64) -> usize {
+    pieces.partition_point(|piece| piece.end < t).min(pieces.len() - 1)
+}
+
+/// The greatest of some pieces over [p, q], piece by piece.
+fn envelope(candidates: &[Piece], p: f64, q: f64, found: &mut Vec<Piece>) {
+    let mut cuts: Vec<f64> = vec![p, q];
+    for (k, a) in candidates.iter().enumerate() {
+        for b in &candidates[k + 1..] {
+            crossings(a, b, &mut cuts);
+        }
+    }
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup();
+    for pair in cuts.windows(2) {
+        let middle = 0.5 * (pair[0] + pair[1]);
+        let best = candidates.iter().max_by(|a, b| a.at(middle).total_cmp(&b.at(middle)));
+        found.extend(best.map(|best| best.part(pair[0], pair[1])));
+    }
+}
+
+/// The times at which two pieces over the same stretch have the same value.
+fn crossings(a: &Piece, b: &Piece, times: &mut Vec<f64>) {
+    let difference: [f64; 4] = std::array::from_fn(|k| a.cubic[k] - b.cubic[k]);
+    if !difference[0].is_finite() {
+        return;
+    }
+    let difference = Piece { cubic: difference, ..*a };
+    for part in difference.monotone() {
+        let (mut low, mut high) = (part.start, part.end);
+        let sign = difference.at(low) < 0.0;
+        if (difference.at(high) < 0.0) == sign {
+            continue;
+        }
+        loop {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if (difference.at(middle) < 0.0) == sign { low = middle } else { high = middle }
+        }
+        times.push(high);
+    }
+}
+
+/// The greatest values of pieces, for any range of them: of each power of two pieces from each one on.
+struct Peaks {
+    levels: Vec<Vec<(f64, f64, Origin)>>,
+}
+
+impl Peaks {
+    fn new(pieces: &[Piece]) -> Self {
+        let top = |piece: &Piece| {
+            let (time, value) = piece.top();
+            (time, value, piece.origin)
+        };
+        let mut levels = vec![pieces.iter().map(top).collect::<Vec<_>>()];
+        let mut width = 1;
+        while 2 * width <= pieces.len() {
+            let below = &levels[levels.len() - 1];
+            let level = (0..=pieces.len() - 2 * width).map(|k| higher(below[k], below[k + width])).collect();
+            levels.push(level);
+            width *= 2;
+        }
+        Self { levels }
+    }
+
+    fn greatest(&self, range: std::ops::Range<usize>) -> Option<(f64, f64, Origin)> {
+        if range.is_empty() {
+            return None;
+        }
+        let level = range.len().ilog2() as usize;
+        let of_level = &self.levels[level];
+        Some(higher(of_level[range.start], of_level[range.end - (1 << level)]))
+    }
+}
+
+fn higher(a: (f64, f64, Origin), b: (f64, f64, Origin)) -> (f64, f64, Origin) {
+    if b.1 > a.1 { b } else { a }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// sin(t) over [0, 20] by pieces of a hundredth.
+    fn sine() -> Vec<Piece> {
+        let piece = |k: usize| {
+            let [a, b] = [k, k + 1].map(|k| k as f64 / 100.0);
+            Piece::through(a, b, [a.sin(), b.sin()], [a.cos(), b.cos()])
+        };
+        (0..2000).map(piece).collect()
+    }
+
+    fn value(signal: &[Piece], t: f64) -> f64 {
+        signal.iter().find(|piece| piece.start <= t && t <= piece.end).unwrap().at(t)
+    }
+
+    #[test]
+    fn the_greatest_value_ahead_is_that_of_an_end_or_a_peak() {
+        let signal = sine();
+        for window in [[0.0, 1.0], [0.5, 0.75], [0.0, 3.0], [1.0, 9.0], [0.0, 0.0], [2.0, f64::INFINITY]] {
+            let ahead = greatest_ahead(&signal, window);
+            for k in 0..500 {
+                let t = k as f64 * 0.0173;
+                let to = (t + window[1]).min(20.0);
+                let (from, steps) = (t + window[0], 2000);
+                let samples = (0..=steps).map(|j| (from + (to - from) * j as f64 / steps as f64).sin());
+                let expected = samples.fold(f64::NEG_INFINITY, f64::max);
+                let actual = value(&ahead, t);
+                assert!((actual - expected).abs() < 2e-5, "{window:?} at {t}: {actual} is not {expected}");
+                assert!(actual > expected - 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn extremes_know_when_they_are() {
+        let (time, value, origin) = greatest(&sine(), [0.5, 4.0]).unwrap();
+        assert!((time - std::f64::consts::FRAC_PI_2).abs() < 1e-5 && (value - 1.0).abs() < 1e-9);
+        assert_eq!(origin.time(time), time);
+        // the least of the greatest over one second: at pi + 1, where both ends are as high
+        let ahead = turned(&greatest_ahead(&sine(), [0.0, 1.0]));
+        let (time, value, origin) = greatest(&ahead, [0.0, 6.0]).unwrap();
+        let expected = 1.5 * std::f64::consts::PI - 0.5;
+        assert!((time - expected).abs() < 1e-8, "{time}");
+        assert!((value + expected.sin()).abs() < 1e-9, "{value}");
+        let base = origin.time(time);
+        assert!((base - expected).abs() < 1e-6 || (base - expected - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_jump_is_no_value_between() {
+        let signal = [
+            Piece::constant(0.0, 1.0, 2.0, Origin::Later(0.0)),
+            Piece::constant(1.0, 3.0, -1.0, Origin::Later(0.0)),
+        ];
+        let ahead = greatest_ahead(&signal, [0.5, 1.0]);
+        assert_eq!([0.2, 0.6, 1.4].map(|t| value(&ahead, t)), [2.0, -1.0, -1.0]);
+    }
+}

@@ -1,0 +1,218 @@
+//! What is known of the properties of a run so far, and what they come to.
+
+use crate::base::Span;
+use crate::codegen::program::{ClaimKind, ClaimSystem, Formula, Program, Property};
+use crate::runtime::guards::{Guards, Origin};
+use crate::runtime::margins::{Margins, Spot, When};
+use crate::runtime::observe::Verdict;
+use crate::runtime::signal::{Piece, greatest, greatest_ahead, turned};
+
+/// How well the pieces of a margin hit it, as a share of it (of 1, if it is less).
+pub const ACCURACY: f64 = 1e-10;
+
+/// Which extreme is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extreme {
+    /// The least.
+    Least,
+    /// The greatest.
+    Greatest,
+}
+
+impl Extreme {
+    /// 1, or -1 to turn the greatest into the least.
+    pub fn sign(self) -> f64 {
+        match self {
+            Extreme::Least => 1.0,
+            Extreme::Greatest => -1.0,
+        }
+    }
+}
+
+/// A margin at the time at which it is an extreme.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// The margin.
+    pub value: f64,
+    /// When, s.
+    pub time: f64,
+    /// It counts as zero within this.
+    slack: f64,
+    /// Whether zero is enough.
+    closed: bool,
+    /// Who decides it.
+    agents: Vec<(String, String)>,
+}
+
+impl Found {
+    /// The margin of a spot.
+    pub fn new(margins: &mut Margins<'_, '_>, spot: &Spot, time: f64, when: When) -> Self {
+        let slack = margins.slack(spot, when);
+        Self { value: spot.value, time, slack, closed: spot.closed, agents: margins.bound_agents(spot) }
+    }
+}
+
+/// What is watched of one property.
+#[derive(Clone, Debug)]
+pub enum Watched {
+    /// The extreme of a condition over a window.
+    Extreme {
+        /// Which.
+        extreme: Extreme,
+        /// The number of the condition.
+        condition: usize,
+        /// From when to when, s.
+        window: [f64; 2],
+        /// The extreme so far.
+        found: Option<Found>,
+    },
+    /// A goal within a window, and a condition before.
+    Until {
+        /// The number of the condition before.
+        before: usize,
+        /// The number of the goal.
+        goal: usize,
+        /// From when to when, s.
+        window: [f64; 2],
+        /// The least margin of the condition before so far.
+        least: Option<Found>,
+        /// The greatest margin so far.
+        found: Option<Found>,
+    },
+    /// Windows within windows.
+    Nested {
+        /// What each looks for, and over which window, outermost first.
+        operators: Vec<(Extreme, [f64; 2])>,
+        /// The number of the condition.
+        condition: usize,
+        /// Its margin so far.
+        trace: Trace,
+    },
+}
+
+/// The margin of a condition so far.
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    /// By pieces.
+    pub pieces: Vec<Piece>,
+    /// Who decides it, in order of time.
+    pub deciders: Vec<Decider>,
+}
+
+/// Who decides a margin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decider {
+    /// From when on, s.
+    pub from: f64,
+    /// Whether a margin of zero is enough.
+    pub closed: bool,
+    /// The agents.
+    pub agents: Vec<(String, String)>,
+}
+
+/// All properties of a run.
+#[derive(Debug, Default)]
+pub struct Monitors<'p> {
+    /// Each with what is watched of it.
+    pub properties: Vec<(&'p Property, Watched)>,
+    /// The condition of each number, with its instance.
+    pub conditions: Vec<(u32, &'p ClaimSystem)>,
+    /// Up to when they have been watched, s.
+    pub done: f64,
+}
+
+impl<'p> Monitors<'p> {
+    /// Nothing watched yet.
+    pub fn new(program: &'p Program, guards: &Guards<'p>) -> Self {
+        let of_property = |instance: u32| match guards.definition(instance).origin {
+            Origin::Claim(claim) if claim.kind == ClaimKind::Property => Some((instance, claim)),
+            _ => None,
+        };
+        let properties = program.properties();
+        let instances = if properties.is_empty() { 0 } else { guards.instances.len() as u32 };
+        let watched = |property: &'p Property| (property, watched(&property.formula));
+        Self {
+            properties: properties.iter().map(watched).collect(),
+            conditions: (0..instances).filter_map(of_property).collect(),
+            done: 0.0,
+        }
+    }
+
+    /// What the properties came to.
+    pub fn verdicts(&self) -> Vec<Verdict> {
+        self.properties.iter().map(|(property, watched)| verdict(property, watched)).collect()
+    }
+}
+
+/// What is to be watched of a formula.
+fn watched(formula: &Formula) -> Watched {
+    let mut operators: Vec<(Extreme, [f64; 2])> = Vec::new();
+    let mut formula = formula;
+    loop {
+        let (extreme, window, inner) = match formula {
+            Formula::Always(window, inner) => (Extreme::Least, window, inner),
+            Formula::Eventually(window, inner) => (Extreme::Greatest, window, inner),
+            Formula::Until { before, window, goal } => {
+                let (before, goal, window) = (*before, *goal, *window);
+                return Watched::Until { before, goal, window, least: None, found: None };
+            }
+            Formula::Holds(condition) => return over(operators, *condition),
+        };
+        match operators.last_mut() {
+            // Of the same twice the windows add up.
+            Some((outer, sum)) if *outer == extreme => (0..2).for_each(|k| sum[k] += window[k]),
+            _ => operators.push((extreme, *window)),
+        }
+        formula = inner;
+    }
+}
+
+/// Operators, outermost first, over a condition.
+fn over(operators: Vec<(Extreme, [f64; 2])>, condition: usize) -> Watched {
+    match operators[..] {
+        [] => Watched::Extreme { extreme: Extreme::Least, condition, window: [0.0; 2], found: None },
+        [(extreme, window)] => Watched::Extreme { extreme, condition, window, found: None },
+        [..] => Watched::Nested { operators, condition, trace: Trace::default() },
+    }
+}
+
+impl Trace {
+    /// The value of the operators over the condition at t = 0.
+    fn found(&self, operators: &[(Extreme, [f64; 2])]) -> Option<Found> {
+        let mut signal = self.pieces.clone();
+        for (extreme, window) in operators[1..].iter().rev() {
+            signal = match extreme {
+                Extreme::Greatest => greatest_ahead(&signal, *window),
+                Extreme::Least => turned(&greatest_ahead(&turned(&signal), *window)),
+            };
+        }
+        let (extreme, window) = operators[0];
+        if extreme == Extreme::Least {
+            signal = turned(&signal);
+        }
+        let (time, value, origin) = greatest(&signal, window)?;
+        let (value, time) = (-extreme.sign() * value, origin.time(time));
+        let decider = self.deciders.partition_point(|decider| decider.from <= time).checked_sub(1)?;
+        let Decider { closed, agents, .. } = self.deciders[decider].clone();
+        Some(Found { value, time, slack: ACCURACY * value.abs().max(1.0), closed, agents })
+    }
+}
+
+fn verdict(property: &Property, watched: &Watched) -> Verdict {
+    let (found, nothing) = match watched {
+        // Over an empty window `always` holds, and `eventually` does not.
+        Watched::Extreme { extreme, found, .. } => (found.clone(), f64::INFINITY * extreme.sign()),
+        Watched::Until { found, .. } => (found.clone(), f64::NEG_INFINITY),
+        Watched::Nested { operators, trace, .. } => {
+            (trace.found(operators), f64::INFINITY * operators[0].0.sign())
+        }
+    };
+    let (name, span): (String, Span) = (property.name.clone(), property.span);
+    let Some(found) = found else {
+        return Verdict { name, span, holds: nothing > 0.0, margin: nothing, time: None, agents: Vec::new() };
+    };
+    let on_boundary = found.value.abs() <= found.slack;
+    let holds = if on_boundary { found.closed } else { found.value > 0.0 };
+    let margin = if on_boundary { 0.0 } else { found.value };
+    Verdict { name, span, holds, margin, time: Some(found.time), agents: found.agents }
+}

@@ -1,0 +1,3 @@
+agent A { state x = 0  flow { x' = 1 } }
+property p = always forall a in A: a.x <= self.x
+run { stop when self is Go }
