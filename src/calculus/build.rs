@@ -12,7 +12,7 @@ use crate::calculus::frame::{AgentRef, Env, EnvId, Scope, Value};
 use crate::calculus::graph::{Node, NodeId};
 use crate::calculus::system::{Layout, Slot};
 use crate::math::Op;
-use crate::model::ir::{ExprId, ExprKind, FunctionId, ModeId, Type, TypeId};
+use crate::model::ir::{Aggregate, ExprId, ExprKind, FunctionId, ModeId, Quantifier, Type, TypeId};
 
 /// Why an expression is not lowered.
 #[derive(Debug)]
@@ -161,6 +161,9 @@ fn step(draft: &mut Draft, scope: &mut Scope, env: EnvId, id: ExprId) -> Result<
                 None => draft.graph.number(0.0),
             }
         }
+        ExprKind::Quantifier { .. } | ExprKind::Aggregate { .. } if scope.equations.is_some() => {
+            over_members(draft, scope, env, id)?
+        }
         ExprKind::Quantifier { .. } => return Err(Error::QuantifierInNumber { span }.into()),
         ExprKind::Aggregate { .. } => return Err(Wait::Halted(Halt::Aggregate(env, id))),
         ExprKind::Rising(_) | ExprKind::Crossing(_) => {
@@ -168,6 +171,56 @@ fn step(draft: &mut Draft, scope: &mut Scope, env: EnvId, id: ExprId) -> Result<
         }
     };
     Ok(Value::Number(node))
+}
+
+/// A quantifier or an aggregate in a flow: the members of its set one after the other.
+fn over_members(draft: &mut Draft, scope: &mut Scope, env: EnvId, id: ExprId) -> Result<NodeId, Wait> {
+    let model = draft.model;
+    let span = model.exprs[id].span;
+    let (op, nothing, (binder, set, other, filter, body)) = match &model.exprs[id].kind {
+        ExprKind::Quantifier { kind, binder, set, other, filter, body } => {
+            let (op, nothing) = match kind {
+                Quantifier::Exists => (Op::Or, 0.0),
+                Quantifier::Forall => (Op::And, 1.0),
+            };
+            (op, nothing, (*binder, *set, *other, *filter, Some(*body)))
+        }
+        ExprKind::Aggregate { kind, binder, set, other, filter, term } => {
+            let (op, nothing) = match kind {
+                Aggregate::Count | Aggregate::Sum => (Op::Add, 0.0),
+                Aggregate::Min => (Op::Min, f64::INFINITY),
+                Aggregate::Max => (Op::Max, f64::NEG_INFINITY),
+            };
+            (op, nothing, (*binder, *set, *other, *filter, *term))
+        }
+        _ => unreachable!("called for these only"),
+    };
+    let owner = TypeId::new(scope.frame.slots[0].ty());
+    let links = model.types[owner].sets.iter().find(|found| found.ty == set);
+    let nothing = draft.graph.number(nothing);
+    let mut folded = nothing;
+    for link in links.map_or(0..0, |set| set.first..set.first + set.count) {
+        let member = AgentRef::Link { from: 0, link };
+        let slot = scope.slot(model, member, span)?.expect("a link has a slot");
+        let inner = scope.bound_env(env, binder, slot);
+        let mut belongs = present(draft, scope, member);
+        if other {
+            let [own, its] = [AgentRef::Slot(0), member].map(|agent| agent_number(draft, scope, agent));
+            let differs = draft.graph.binary(Op::Ne, own, its);
+            belongs = draft.graph.binary(Op::And, belongs, differs);
+        }
+        if let Some(filter) = filter {
+            let filter = need_number(scope, inner, filter)?;
+            belongs = draft.graph.binary(Op::And, belongs, filter);
+        }
+        let value = match body {
+            Some(body) => need_number(scope, inner, body)?,
+            None => draft.graph.number(1.0),
+        };
+        let value = draft.graph.select(belongs, value, nothing);
+        folded = draft.graph.binary(op, folded, value);
+    }
+    Ok(folded)
 }
 
 fn need(scope: &Scope, env: EnvId, expr: ExprId) -> Result<Value, Wait> {

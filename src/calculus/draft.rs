@@ -143,6 +143,7 @@ fn columns(model: &Model, ty: &AgentType) -> AgentSystem {
         params: ty.params.iter().map(column).collect(),
         discretes: ty.discretes.iter().map(column).collect(),
         links: ty.links.iter().map(link).collect(),
+        sets: ty.sets.iter().map(|set| (set.ty.index(), set.count)).collect(),
         hazards: ty.rates().map(|transition| transition.label.clone()).collect(),
         events: ty.events.iter().map(event).collect(),
         streams: Vec::new(),

@@ -122,8 +122,10 @@ pub struct AgentSystem {
     pub params: Vec<Column>,
     /// Names of the discrete variables.
     pub discretes: Vec<Column>,
-    /// The links.
+    /// The links; those to members of sets come last.
     pub links: Vec<LinkSystem>,
+    /// The sets that its flows read: the type, and how many there are at t = 0.
+    pub sets: Vec<(usize, usize)>,
     /// The labels of its `rate` transitions. What is left of their hazards are states behind the others, which no output shows.
     pub hazards: Vec<String>,
     /// Its events.

@@ -104,6 +104,11 @@ fn tell_checked(path: &Path, checked: &CheckedModel) -> Result<(), Refused> {
         };
         text.push_str(&format!("  {label}: {pairs}\n"));
     }
+    for (reader, set, count) in sets(system) {
+        text.push_str(&format!(
+            "  {reader}: its flow reads all {count} agents of {set}; who read each other step together\n"
+        ));
+    }
     say(&text)
 }
 
@@ -111,6 +116,13 @@ fn tell_checked(path: &Path, checked: &CheckedModel) -> Result<(), Refused> {
 fn interactions(system: &System) -> impl Iterator<Item = (&str, bool)> {
     let transitions = system.interactions.iter().flat_map(|interaction| &interaction.transitions);
     transitions.map(|pair| (pair.transition.label.as_str(), pair.symmetric))
+}
+
+/// Each type whose flow reads a set, what that is a set of, and its size (rule 13).
+fn sets(system: &System) -> impl Iterator<Item = (&str, &str, usize)> {
+    system.types.iter().flat_map(|ty| {
+        ty.sets.iter().map(|&(set, count)| (ty.name.as_str(), system.types[set].name.as_str(), count))
+    })
 }
 
 fn model_json(path: &Path, checked: &CheckedModel) -> Value {
@@ -123,6 +135,9 @@ fn model_json(path: &Path, checked: &CheckedModel) -> Value {
         "diagnostics": diagnostics.collect::<Vec<_>>(),
         "interactions": pairs
             .map(|(label, symmetric)| json!({ "transition": label, "unordered": symmetric }))
+            .collect::<Vec<_>>(),
+        "sets": checked.system.iter().flat_map(sets)
+            .map(|(reader, set, count)| json!({ "reader": reader, "set": set, "count": count }))
             .collect::<Vec<_>>(),
     })
 }

@@ -1,8 +1,8 @@
 //! What is asked of a model in more than one place: its lists of actions, the names of its agents and variables.
 
 use super::ir::{
-    Action, AgentType, Create, Destination, Draw, ExprId, Given, Inside, Integrator, LinkCase, LinkTarget,
-    ModeId, Model, Population, Run, Transition, Trigger, VarRef,
+    Action, AgentType, Create, Destination, Draw, ExprId, Given, Inside, Integrator, Link, LinkCase,
+    LinkTarget, ModeId, Model, Population, Run, Transition, Trigger, VarRef,
 };
 
 impl Model {
@@ -39,6 +39,11 @@ fn add_creations<'m>(list: &'m [Action], found: &mut Vec<&'m Create>) {
 }
 
 impl AgentType {
+    /// The links that its text declares.
+    pub fn declared_links(&self) -> &[Link] {
+        &self.links[..self.sets.first().map_or(self.links.len(), |set| set.first)]
+    }
+
     /// The `rate` transitions, in order.
     pub fn rates(&self) -> impl Iterator<Item = &Transition> {
         self.transitions.iter().filter(|transition| matches!(transition.trigger, Trigger::Rate { .. }))

@@ -129,9 +129,6 @@ impl<'a> Context<'a> {
         let Some(state) = self.flowing(ty, name) else { return };
         let slot = self.agents[ty.index()].states[state].per_time();
         self.expect(rate, slot, &what);
-        if rate.ty != Ty::Wrong && self.facts[rate.id.index()].quantified {
-            self.refuse("quantifiers in flows", equation.rate.span);
-        }
         if let Some(&first) = flowing.get(&state) {
             return self.report(ModeError::TwoFlows { state: name.text.clone(), span: equation.span, first });
         }

@@ -102,6 +102,7 @@ impl<'a> Context<'a> {
             states: Vec::new(),
             discretes: Vec::new(),
             links: Vec::new(),
+            sets: Vec::new(),
             events: Vec::new(),
             lets: Vec::new(),
             declared: Vec::new(),

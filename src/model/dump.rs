@@ -85,7 +85,7 @@ impl<'m> Writer<'m> {
                 self.line(1, &text);
             }
         }
-        for link in &ty.links {
+        for link in ty.declared_links() {
             let none = if link.required { "" } else { " or none" };
             let target = &self.model.types[link.ty].name;
             self.line(1, &format!("link {}: {target}{none}", link.name));
@@ -348,7 +348,7 @@ impl<'m> Writer<'m> {
                 text.push_str(&format!(" {}={}", variable.name, number(*value, variable.ty)));
             }
         }
-        for (link, target) in ty.links.iter().zip(&agent.links) {
+        for (link, target) in ty.declared_links().iter().zip(&agent.links) {
             let target = target.map_or("none".to_string(), |number| self.agent_name(number));
             text.push_str(&format!(" {}={target}", link.name));
         }

@@ -209,8 +209,10 @@ pub struct AgentType {
     pub states: Vec<Variable>,
     /// Discrete variables.
     pub discretes: Vec<Variable>,
-    /// Links; parameters of agent type are links that are never none.
+    /// Links; parameters of agent type are links that are never none. Those to members of sets come last.
     pub links: Vec<Link>,
+    /// The sets that its flows read.
+    pub sets: Vec<Set>,
     /// Events that its agents emit.
     pub events: Vec<Event>,
     /// Algebraic definitions, each after those that it reads (of the same agent).
@@ -285,6 +287,17 @@ pub struct Link {
     pub cases: Vec<LinkCase>,
     /// Where it is declared.
     pub span: Span,
+}
+
+/// All agents of a type, as a flow reads them: by a link to each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Set {
+    /// The type.
+    pub ty: TypeId,
+    /// The link to the first.
+    pub first: usize,
+    /// How many there are at t = 0.
+    pub count: usize,
 }
 
 /// `event name(params)`.

@@ -52,6 +52,7 @@ mod population;
 mod make;
 mod record;
 mod run;
+mod sets;
 mod consistency;
 mod origin;
 mod formula;
@@ -128,6 +129,7 @@ pub fn check(ast: &Ast, sources: &mut SourceMap, files: &mut dyn Files, settings
     run::trajectories(&mut context, &items, settings);
     consistency::check_dimensions(&mut context);
     let warnings = lint::lint(&mut context);
+    sets::fill(&mut context);
     context.finish(warnings)
 }
 

@@ -108,10 +108,8 @@ impl<'a> Context<'a> {
                 self.report(ActionError::ModeChange { span: target.span, why, help });
             }
             let alone = match item.trigger.kind {
-                TriggerKind::When => None,
+                TriggerKind::When | TriggerKind::After(_) | TriggerKind::Every(_) => None,
                 TriggerKind::Rate(_) => Some("rate"),
-                TriggerKind::After(_) => Some("after"),
-                TriggerKind::Every(_) => Some("every"),
                 TriggerKind::On { .. } => Some("on"),
             };
             if let Some(word) = alone {
@@ -208,9 +206,6 @@ impl<'a> Context<'a> {
         let per_time = Slot::of(Dimension::ONE).per_time();
         let rate = self.lower_into(scope, expr, per_time, "a rate");
         let facts = self.facts[rate.id.index()];
-        if rate.ty != Ty::Wrong && facts.quantified {
-            self.refuse("quantifiers in rates", expr.span);
-        }
         if rate.ty != Ty::Wrong
             && facts.closed
             && let Some(value) = self.evaluate_closed(rate.id)

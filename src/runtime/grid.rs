@@ -159,7 +159,8 @@ impl Grid {
     }
 
     fn overlap(&self, a: u32, b: u32) -> bool {
-        self.get(a).iter().zip(self.get(b)).all(|(a, b)| a.lo <= b.hi && b.lo <= a.hi)
+        // An empty box overlaps nothing, not even one without end.
+        self.get(a).iter().zip(self.get(b)).all(|(a, b)| a.lo.max(b.lo) <= a.hi.min(b.hi))
     }
 
     /// The cell of the lower corner of what two boxes that overlap have in common.
@@ -225,15 +226,21 @@ mod tests {
     }
 
     fn overlap(a: &[Interval], b: &[Interval]) -> bool {
-        a.iter().zip(b).all(|(a, b)| a.lo <= b.hi && b.lo <= a.hi)
+        let is_empty = |bounds: &[Interval]| bounds.iter().any(|bound| bound.lo > bound.hi);
+        !is_empty(a) && !is_empty(b) && a.iter().zip(b).all(|(a, b)| a.lo <= b.hi && b.lo <= a.hi)
     }
 
-    /// Boxes of very different sizes, some without end.
+    /// Boxes of very different sizes, some without end, some empty.
     fn some(n: usize, dimensions: usize, die: &mut dyn FnMut() -> f64) -> Vec<Interval> {
         (0..n * dimensions)
             .map(|_| {
                 let (place, size) = (100.0 * (die() - 0.5), 10.0_f64.powf(4.0 * die() - 2.5));
-                if die() < 0.01 { Interval::WHOLE } else { Interval { lo: place, hi: place + size } }
+                let bound = Interval { lo: place, hi: place + size };
+                match die() {
+                    rare if rare < 0.01 => Interval::WHOLE,
+                    rare if rare < 0.02 => Interval { lo: f64::INFINITY, hi: f64::NEG_INFINITY },
+                    _ => bound,
+                }
             })
             .collect()
     }

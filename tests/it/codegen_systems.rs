@@ -156,6 +156,7 @@ pub fn with_flow(graph: Graph, rates: Vec<NodeId>) -> System {
         params: (0..N_COLUMNS).map(column).collect(),
         discretes: Vec::new(),
         links: Vec::new(),
+        sets: Vec::new(),
         hazards: Vec::new(),
         events: Vec::new(),
         streams: Vec::new(),

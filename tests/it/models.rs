@@ -17,6 +17,8 @@ mod robertson;
 mod van_der_pol;
 mod double_crossing;
 mod multirate;
+mod flock;
+mod highway;
 mod interlock;
 mod convoy;
 mod metro;
@@ -97,8 +99,8 @@ fn bumper_stays_in_its_arena() {
 }
 
 #[test]
-fn a_jam_on_the_highway() {
-    let run = Case::shipped("highway.hy").run();
+fn a_jam_on_the_static_highway() {
+    let run = Case::shipped("highway_static.hy").run();
     assert_eq!(run.end, Ended::Until);
     assert!(run.false_asserts.is_empty(), "{:?}", run.false_asserts);
     assert_eq!(run.finals.len(), 66);

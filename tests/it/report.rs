@@ -61,7 +61,7 @@ fn a_page_holds_the_events_and_asks_for_nothing() {
 #[test]
 fn a_report_beside_a_run_changes_no_event() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, until) in [("two_cars.hy", "12"), ("highway.hy", "2.2"), ("ball.hy", "2.2")] {
+    for (name, until) in [("two_cars.hy", "12"), ("highway_static.hy", "2.2"), ("ball.hy", "2.2")] {
         let path = model(name);
         let path = path.to_str().unwrap();
         let quiet = ["run", path, "-q", "--until", until];
@@ -186,7 +186,7 @@ fn asked(name: &str, words: &[&str]) -> Option<Value> {
 #[test]
 fn the_page_works_in_a_browser() {
     for (name, words, n_charts) in
-        [("bumper.hy", &[][..], 3), ("highway.hy", &["--until", "30"][..], 3), ("ball.hy", &[][..], 2)]
+        [("bumper.hy", &[][..], 3), ("highway_static.hy", &["--until", "30"][..], 3), ("ball.hy", &[][..], 2)]
     {
         let Some(said) = asked(name, words) else { return };
         let number = |key: &str| said[key].as_f64().unwrap_or_else(|| panic!("{name}: no {key} in {said}"));

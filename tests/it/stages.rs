@@ -19,7 +19,7 @@ fn case(name: &str) -> Case {
 
 #[test]
 fn ast() {
-    for name in ["bouncing_ball", "bumper", "highway"] {
+    for name in ["bouncing_ball", "bumper", "highway_static"] {
         let ast = case(name).ast(&mut SourceMap::default()).expect("a model without syntax errors");
         check(name, "ast", &hyc::syntax::dump(&ast));
     }
@@ -27,7 +27,7 @@ fn ast() {
 
 #[test]
 fn tape_and_machine_code() {
-    for name in ["bouncing_ball", "bumper", "highway"] {
+    for name in ["bouncing_ball", "bumper", "highway_static"] {
         let (_, system, _) = case(name).system();
         check(name, "tape", &hyc::codegen::dump_tape(&system));
         check(name, "clif", &hyc::codegen::dump_clif(&system));

@@ -246,7 +246,8 @@ fn what_is_not_stiff_is_left_alone() {
 
 #[test]
 fn shipped_models_that_are_not_stiff_are_left_alone() {
-    let stiff = ["robertson.hy", "van_der_pol.hy"];
+    // Cars that follow at rest with each other move slowly along a flow that is fast: the other method pays there.
+    let stiff = ["robertson.hy", "van_der_pol.hy", "highway.hy"];
     let mut models: Vec<String> = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/models"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())

@@ -72,6 +72,7 @@ pub fn model() -> Model {
         states: ["x", "y", "z"].map(|name| variable(name, Type::Real)).into(),
         discretes: vec![variable("d", Type::Int), variable("b", Type::Bool)],
         links: Vec::new(),
+        sets: Vec::new(),
         events: Vec::new(),
         lets: Vec::new(),
         declared: Vec::new(),

@@ -19,6 +19,7 @@ mod rule_11_time;
 mod rule_11_rate;
 mod rule_12_end;
 mod rule_13_coupling;
+mod rule_13_sets;
 mod rule_14_wakes;
 mod rule_15_kinks;
 mod rule_16_output;

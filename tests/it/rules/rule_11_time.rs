@@ -1,6 +1,6 @@
 //! Rule 11: `after` and `every`.
 
-use crate::harness::{all_near, simulate};
+use crate::harness::{all_near, both_forms, simulate};
 
 #[test]
 fn rule_11_after_counts_from_entry() {
@@ -147,4 +147,34 @@ fn rule_11_zero_delay() {
          system { a = A() }  run { until 1 }",
     );
     assert_eq!(run.times("A.go"), [0.0]);
+}
+
+/// The pairs of an interaction have clocks of their own: from t = 0, or from when the younger has come to be.
+#[test]
+fn rule_11_timers_of_interactions() {
+    let text = "agent A(late: bool) { state x = 3*index  discrete n: int = 0, met: int = 0
+                   flow { x' = 0 }  after 0.5 when late { create A(late = false, x = 1) } }
+                 interaction Pair(a: A, b: A) {
+                   tick: every 1 when abs(a.x - b.x) <= 2 { a.n := a.n + 1  b.n := b.n + 1 }
+                   done: after 2 { a.met := a.met + 1  b.met := b.met + 1 } }
+                 system { a = A[2](late = index == 0) }  run { until 3 }";
+    for run in both_forms(text) {
+        // Only the third is near both; it came at 0.5.
+        assert_eq!(run.times("Pair.tick"), [1.5, 1.5, 2.5, 2.5]);
+        assert_eq!(run.times("Pair.done"), [2.0, 2.5, 2.5]);
+        assert_eq!((run.value("a[0].n"), run.value("a[1].n"), run.value("A#2.n")), (2.0, 2.0, 4.0));
+        assert_eq!(run.value("A#2.met"), 2.0);
+    }
+}
+
+/// A delay that is not the same when the two change places makes a flag for each ordered pair.
+#[test]
+fn rule_11_a_delay_of_one_participant() {
+    let run = simulate(
+        "agent A(d: real) { discrete n: int = 0 }
+         interaction Pair(a: A, b: A) { late: after a.d when b.n < 5 { a.n := a.n + 1 } }
+         system { a = A[3](d = index + 1) }  run { until 5 }",
+    );
+    assert_eq!(run.times("Pair.late"), [1.0, 1.0, 2.0, 2.0, 3.0, 3.0]);
+    assert_eq!(run.times_of("Pair.late", "a[2]"), [3.0, 3.0]);
 }

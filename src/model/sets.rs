@@ -1,0 +1,76 @@
+//! Sets that flows read (rule 13): `sum o in other Car: sin(o.th - th)` in a flow couples its owner with every car.
+//!
+//! In: a model with its population. Out: the same, where each agent whose flow ranges over a type has a link to every agent of
+//! it. Nothing in the text names these links, and nothing but death changes them; by them the flow is a formula over agents
+//! like any other, with its derivatives, its kinks and its couplings.
+
+use rustc_hash::FxHashSet;
+
+use super::context::Context;
+use super::ir::{ExprId, ExprKind, Link, Set, Trigger, TypeId};
+use super::operands::for_each_operand;
+use crate::base::Span;
+
+/// Gives agents links to all members of the sets that their flows read.
+pub(super) fn fill(context: &mut Context) {
+    if context.has_errors() {
+        return;
+    }
+    let created: FxHashSet<TypeId> = context.model.creations().iter().map(|create| create.ty).collect();
+    for ty in context.model.types.indices().collect::<Vec<_>>() {
+        for (set, span) in sets_read(context, ty) {
+            if created.contains(&set) || created.contains(&ty) {
+                context.refuse("quantifiers in flows of or over agents that are created", span);
+            } else {
+                link_all(context, ty, set, span);
+            }
+        }
+    }
+}
+
+/// The types that flows and hazards of a type range over, each once, with where they first do.
+fn sets_read(context: &Context, ty: TypeId) -> Vec<(TypeId, Span)> {
+    let model = &context.model;
+    let rates = model.types[ty].transitions.iter().filter_map(|transition| match transition.trigger {
+        Trigger::Rate { rate, .. } => Some(rate),
+        _ => None,
+    });
+    let flows = model.types[ty].modes.iter().flat_map(|mode| &mode.flow).map(|&(_, rate, _)| rate);
+    let mut pending: Vec<ExprId> = flows.chain(rates).collect();
+    pending.reverse();
+    let (mut seen, mut found) = (FxHashSet::default(), Vec::new());
+    while let Some(id) = pending.pop() {
+        if !context.facts[id.index()].quantified || !seen.insert(id) {
+            continue;
+        }
+        let expr = &model.exprs[id];
+        match &expr.kind {
+            ExprKind::Quantifier { set, .. } | ExprKind::Aggregate { set, .. }
+                if !found.iter().any(|(known, _)| known == set) =>
+            {
+                found.push((*set, expr.span));
+            }
+            ExprKind::Let(agent, number) => pending.extend(context.let_value(*agent, *number)),
+            ExprKind::Call(function, _) => pending.push(model.functions[*function].body),
+            _ => {}
+        }
+        for_each_operand(&expr.kind, |operand| pending.push(operand));
+    }
+    found
+}
+
+/// Gives every agent of a type a link to each of a set.
+fn link_all(context: &mut Context, ty: TypeId, set: TypeId, span: Span) {
+    let model = &mut context.model;
+    let agents = &model.population.agents;
+    let members: Vec<usize> = (0..agents.len()).filter(|&number| agents[number].ty == set).collect();
+    let names: Vec<String> = members.iter().map(|&number| model.population.agent_name(number)).collect();
+    let links =
+        names.into_iter().map(|name| Link { name, ty: set, required: false, cases: Vec::new(), span });
+    let owner = &mut model.types[ty];
+    owner.sets.push(Set { ty: set, first: owner.links.len(), count: members.len() });
+    owner.links.extend(links);
+    for agent in model.population.agents.iter_mut().filter(|agent| agent.ty == ty) {
+        agent.links.extend(members.iter().map(|&member| Some(member)));
+    }
+}
