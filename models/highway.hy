@@ -64,4 +64,5 @@ agent Ramp(lane: int) {                      // cars enter: a Poisson process
 }
 
 system { ramps = Ramp[lanes](lane = index + 1) }
+property no_crash = always forall c in Car: c.gap > 0 [m]
 run { until 600 [s]  seed 1  record Car.x, Car.v, Car.lane every 0.5 [s] to "highway_cars.csv" }
