@@ -1,7 +1,7 @@
 //! What is asked of a system in more than one place: its lists of actions, and who is made and removed by them.
 
 use crate::calculus::system::{
-    ActionList, ActionStep, AgentSystem, Birth, FunctionId, InteractionSystem, Source, System,
+    ActionList, ActionStep, AgentSystem, Birth, Condition, FunctionId, InteractionSystem, Source, System,
 };
 
 impl System {
@@ -22,6 +22,16 @@ pub fn action_lists<'s>(
     });
     let pairs = interactions.iter().flat_map(|interaction| &interaction.transitions);
     of_types.chain(pairs.map(|pair| &pair.transition.actions))
+}
+
+impl Condition {
+    /// The terms of its outermost `and`; itself, if it is none.
+    pub fn conjuncts(&self) -> &[Condition] {
+        match self {
+            Condition::And(terms) => terms,
+            condition => std::slice::from_ref(condition),
+        }
+    }
 }
 
 impl ActionList {

@@ -12,7 +12,8 @@ use crate::runtime::guards::{AtomState, Origin, closed, inside};
 use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::{Depth, depth_read};
 use crate::runtime::sleep::Regard;
-use crate::runtime::solve::{time_resolution, ulp};
+use crate::runtime::solve::roots::{Direction, direction};
+use crate::runtime::solve::{scheduled, time_resolution};
 use crate::runtime::truth::{self, Side, Truths};
 
 /// How an atom that lies on its boundary is settled.
@@ -106,10 +107,7 @@ impl<'p> Engine<'p, '_> {
     /// Puts the next time of an `after` or `every` into the queue; a time within 4 ulp of the end is the end (rule 11).
     pub fn queue_schedule(&mut self, instance: u32) {
         let state = &self.guards.instances[instance as usize];
-        let mut time = state.entry + (state.periods + 1) as f64 * state.delay;
-        if (time - self.time_end).abs() <= 4.0 * ulp(self.time_end) {
-            time = self.time_end;
-        }
+        let time = scheduled(state.entry + (state.periods + 1) as f64 * state.delay, self.time_end);
         self.queues.schedules.push(Due { time, number: instance, version: state.arming });
     }
 
@@ -263,12 +261,11 @@ impl<'p> Engine<'p, '_> {
         }
         state.slack = band;
         let bounds = if atom.smooth { self.jet_rounding(kernel, slots, folds, None) } else { [0.0; 3] };
-        for order in 1..3 {
-            if jet[order].abs() > bounds[order] {
-                return jet[order] < 0.0;
-            }
+        match direction(&jet, &bounds) {
+            Direction::Up => false,
+            Direction::Down => true,
+            Direction::Along => closed(atom.relation, self.guards.atoms[index].truth),
         }
-        closed(atom.relation, self.guards.atoms[index].truth)
     }
 
     /// The value of a kernel on the rows before the micro-step; none if a rate would be needed.

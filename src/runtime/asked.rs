@@ -4,6 +4,7 @@ use crate::codegen::program::{Atom, Condition, Frame, Guard, Relation};
 use crate::runtime::engine::Engine;
 use crate::runtime::guards::{allowed, closed};
 use crate::runtime::population::Slots;
+use crate::runtime::solve::roots::{Direction, direction};
 use crate::runtime::solve::time_resolution;
 use crate::runtime::truth::{self, Side};
 
@@ -26,12 +27,8 @@ impl Engine<'_, '_> {
         let side = [Side::At, Side::After]
             .into_iter()
             .find(|&side| self.is_so(question, side, condition, &mut slots.clone()))?;
-        let terms = match condition {
-            Condition::And(terms) => terms.as_slice(),
-            other => std::slice::from_ref(other),
-        };
         let mut found = slots.clone();
-        for term in terms {
+        for term in condition.conjuncts() {
             if let Condition::Exists(quantified) = term
                 && witnesses.contains(&quantified.slot)
             {
@@ -98,10 +95,10 @@ impl Engine<'_, '_> {
         }
         if side == Side::After {
             let bounds = self.jet_rounding(rates, slots, &folds, None);
-            for order in 1..3 {
-                if jet[order].abs() > bounds[order] {
-                    return jet[order] < 0.0;
-                }
+            match direction(&jet, &bounds) {
+                Direction::Up => return false,
+                Direction::Down => return true,
+                Direction::Along => {}
             }
         }
         atom.relation != Relation::Crossing && closed(atom.relation, false)

@@ -95,9 +95,7 @@ impl Leaps<'_> {
         }
         Leap { h, end, good }
     }
-}
 
-impl Leaps<'_> {
     /// Bounds the states over the step from `x` to `x_new` that `rows` holds.
     #[inline(always)]
     pub fn bound<T: Numbers>(&self, x: &[T], x_new: &[T], rows: &mut LeapRows<T>) {

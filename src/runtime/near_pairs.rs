@@ -159,8 +159,8 @@ impl<'p> Engine<'p, '_> {
         let n = self.guards.n_for_candidate(instance, number);
         self.mind_guards((self.guards.instances.len() + self.guards.atoms.len() + n) as u128)?;
         field.listed.push(Listed { agents, instance });
-        let (atoms, agent) =
-            (self.guards.nominate(&self.agents, instance, number, agents[1] as usize), agents[1] as usize);
+        let agent = agents[1] as usize;
+        let atoms = self.guards.nominate(&self.agents, instance, number, agent);
         Ok(New { instance, candidate: Some(Nominee { agent, number, atoms }) })
     }
 

@@ -88,20 +88,14 @@ impl Guards<'_> {
 
     /// An agent is a candidate of a quantifier no more.
     pub fn dismiss(&mut self, agents: &Agents<'_>, instance: u32, number: usize, agent: usize) {
-        let n = self.n_for_candidate(instance, number);
-        let (list, name) = (self.list_of(instance, number), agents.number(agent) as u64);
-        if let Some(candidate) = self.candidates.strike(list, instance, name, n) {
-            self.void(candidate, n);
-        }
+        self.strike(instance, number, agents.number(agent) as u64);
     }
 
     /// An instance has no candidates any more.
     pub fn dismiss_all(&mut self, instance: u32) {
         for number in 0..self.definition(instance).nearby.len() {
-            let (list, n) = (self.list_of(instance, number), self.n_for_candidate(instance, number));
-            for candidate in self.candidates.list(list).to_vec() {
-                self.candidates.strike(list, instance, candidate.number, n);
-                self.void(candidate, n);
+            for candidate in self.candidates.list(self.list_of(instance, number)).to_vec() {
+                self.strike(instance, number, candidate.number);
             }
         }
     }
@@ -117,8 +111,10 @@ impl Guards<'_> {
         looking
     }
 
-    /// Whatever is in a queue for the comparisons of a former candidate is void.
-    fn void(&mut self, candidate: Candidate, n: usize) {
+    /// Takes whoever has this number, if anybody, from a list; whatever is in a queue for its comparisons is void.
+    fn strike(&mut self, instance: u32, number: usize, name: u64) {
+        let (list, n) = (self.list_of(instance, number), self.n_for_candidate(instance, number));
+        let Some(candidate) = self.candidates.strike(list, instance, name, n) else { return };
         for state in &mut self.atoms[candidate.first as usize..][..n] {
             state.version += 1;
             state.left_out = true;

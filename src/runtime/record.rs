@@ -10,7 +10,7 @@ use crate::runtime::failure::Failure;
 use crate::runtime::observe::{Cell, Observer, Row, Who};
 use crate::runtime::population::{ABSENT, Agents};
 use crate::runtime::present::{Depth, Present};
-use crate::runtime::solve::ulp;
+use crate::runtime::solve::scheduled;
 use crate::runtime::truth;
 
 /// Makes the rows that the records of a program ask for.
@@ -77,10 +77,7 @@ impl<'p> Recorder<'p> {
     /// k d, or the end where k d misses it by rounding.
     fn next_of(&self, recording: &Recording<'_>) -> f64 {
         let Some(every) = recording.record.every else { return f64::INFINITY };
-        let time = recording.n_samples as f64 * every;
-        if (time - self.time_end).abs() <= 4.0 * ulp(self.time_end) {
-            return self.time_end;
-        }
+        let time = scheduled(recording.n_samples as f64 * every, self.time_end);
         if time > self.time_end { f64::INFINITY } else { time }
     }
 

@@ -10,7 +10,7 @@ use crate::runtime::act::{Effect, Rows, Write};
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::mail::Message;
-use crate::runtime::solve::ulp;
+use crate::runtime::solve::scheduled;
 use crate::runtime::truth;
 
 impl Engine<'_, '_> {
@@ -127,10 +127,7 @@ impl Engine<'_, '_> {
     pub fn send(&mut self, messages: &[(Message, f64)]) {
         let now = self.present.time;
         for (message, delay) in messages {
-            let mut time = now + delay;
-            if (time - self.time_end).abs() <= 4.0 * ulp(self.time_end) {
-                time = self.time_end;
-            }
+            let time = scheduled(now + delay, self.time_end);
             if time > now {
                 self.mail.send_later(message.clone(), time);
             } else {

@@ -160,11 +160,7 @@ impl<'p> Truths<'_, 'p> {
         }
         let guard = definition.guard.expect("witnesses come from a guard");
         let side = if self.holds(instance, Side::At) { Side::At } else { Side::After };
-        let terms = match &guard.condition {
-            Condition::And(terms) => terms.as_slice(),
-            other => std::slice::from_ref(other),
-        };
-        for term in terms {
+        for term in guard.condition.conjuncts() {
             if let Condition::Exists(quantified) = term
                 && wanted.contains(&quantified.slot)
             {

@@ -147,12 +147,8 @@ impl<'s> Kept<'s> {
 
 /// Where single states lie when the guard is true.
 fn restrictions(mut reader: Reader, guard: &Guard) -> Vec<(Node, Interval)> {
-    let terms = match &guard.condition {
-        Condition::And(terms) => terms.as_slice(),
-        condition => std::slice::from_ref(condition),
-    };
     let mut found: Vec<(Node, Interval)> = Vec::new();
-    for term in terms {
+    for term in guard.condition.conjuncts() {
         let Condition::Atom(k) = term else { continue };
         let form = reader.function(guard.atoms[*k].value);
         let Some((leaf @ Node::State { slot: 0, .. }, factor, constant)) = reader.forms.as_leaf(form) else {

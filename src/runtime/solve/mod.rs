@@ -89,6 +89,11 @@ pub fn time_resolution(t: f64) -> f64 {
     (4.0 * ulp(t)).max(1e-12)
 }
 
+/// A time that is scheduled; the end of the run if it lies within 4 ulp of that (rule 11).
+pub fn scheduled(time: f64, end: f64) -> f64 {
+    if (time - end).abs() <= 4.0 * ulp(end) { end } else { time }
+}
+
 /// The distance from |t| to the next number.
 pub fn ulp(t: f64) -> f64 {
     let size = t.abs();

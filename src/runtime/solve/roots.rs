@@ -102,7 +102,8 @@ fn along(f: &mut Turned<'_>, pieces: &mut Vec<(f64, f64, Entry)>, known: &Known)
     known.touching().then_some(Flip::touch(s))
 }
 
-fn decide(jet: &[f64; 3], rounding: &[f64; 3]) -> Direction {
+/// Rule 3, "On the boundary": by the first of two rates that is not zero within rounding.
+pub fn direction(jet: &[f64; 3], rounding: &[f64; 3]) -> Direction {
     for order in 1..3 {
         if jet[order].abs() > rounding[order] {
             return if jet[order] > 0.0 { Direction::Up } else { Direction::Down };
@@ -135,7 +136,7 @@ fn enter(f: &mut Turned<'_>, s: f64, known: Known) -> Result<Entry, Flip> {
     if jet[0] < -band.max(rounding[0]) {
         return Err(flip);
     }
-    let direction = decide(&jet, &rounding);
+    let direction = direction(&jet, &rounding);
     let passes = known.grazed || !known.touching();
     if direction != Direction::Up && passes && turns_back(f, s, &jet, band.max(rounding[0])) {
         return Ok(Entry::Boundary);
