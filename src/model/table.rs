@@ -111,7 +111,7 @@ pub(super) fn read_rows(
     };
     next(&mut record)?;
     let mut problems = Vec::new();
-    let mut last = record_span(file, text, record_start(&record));
+    let mut last = record_start(&record);
     let mut values = wanted.iter().map(|_| Vec::new()).collect::<Vec<_>>();
     let mut count = 0;
     while count < most && problems.len() < PROBLEMS_MAX && next(&mut record)? {
@@ -136,10 +136,11 @@ pub(super) fn read_rows(
                 }
             }
         }
-        last = record_span(file, text, start);
+        last = start;
         count += 1;
     }
     problems.truncate(PROBLEMS_MAX);
+    let last = record_span(file, text, last);
     if problems.is_empty() { Ok(Rows { count, values, last }) } else { Err(problems) }
 }
 
@@ -165,7 +166,7 @@ pub(super) fn cell(file: FileId, text: &str, row: usize, column: usize) -> Span 
 
 /// The value of a cell, SI; else what is in it, in words.
 fn read_cell(cell: &str, slot: Slot) -> Result<f64, String> {
-    let shown = match cell.char_indices().nth(SHOWN_MAX) {
+    let shown = || match cell.char_indices().nth(SHOWN_MAX) {
         Some((end, _)) => format!("`{}...`", &cell[..end]),
         None => format!("`{cell}`"),
     };
@@ -186,8 +187,8 @@ fn read_cell(cell: &str, slot: Slot) -> Result<f64, String> {
     };
     match value {
         Some(value) if value.is_finite() => Ok(value),
-        Some(_) => Err(format!("{shown} is not finite")),
-        None => Err(format!("{shown} is not")),
+        Some(_) => Err(format!("{} is not finite", shown())),
+        None => Err(format!("{} is not", shown())),
     }
 }
 
