@@ -116,6 +116,18 @@ impl<'p> Cold<'p> {
         herd.states_at(place, t, states);
     }
 
+    /// Tells the states of cold agents at `t`, from which or from before which their ways are followed.
+    pub fn survey(&self, agents: &[usize], t: f64, tell: &mut dyn FnMut(usize, &[f64])) {
+        let mut places = vec![Vec::new(); self.herds.len()];
+        for &agent in agents {
+            let Place { herd, place, .. } = self.places[agent];
+            places[herd as usize].push(place as usize);
+        }
+        for (herd, places) in self.herds.iter().zip(&places) {
+            herd.survey(places, t, &mut |place, states| tell(herd.agents[place] as usize, states));
+        }
+    }
+
     /// Forgets all tracks.
     pub fn clear_tracks(&mut self) {
         self.herds.iter_mut().for_each(|herd| herd.tracks.clear());

@@ -265,8 +265,9 @@ impl<'p, 'o> Engine<'p, 'o> {
     pub fn tell_last(&mut self) -> Result<(), Failure> {
         self.tell_undecided()?;
         let time = self.present.time;
-        for agent in self.agents.visible() {
-            self.present.make(&self.agents, &[agent], Depth::States);
+        let visible = self.agents.visible();
+        self.present.survey(&self.agents, &visible);
+        for agent in visible {
             let row = &self.agents.agents[agent];
             let system = &self.program.types[row.ty];
             let states: Vec<f64> = self

@@ -48,7 +48,7 @@ pub struct Advanced {
 /// An agent that takes so many steps in a window is left to who can choose another method.
 const STEPS_MAX: u32 = 200;
 /// Up to this many lanes are cheaper one by one.
-const FEW: usize = 3;
+pub const FEW: usize = 3;
 
 impl<'p> Herd<'p> {
     /// No agents yet; `inputs` are the auxiliary columns that the flow reads.
@@ -165,7 +165,8 @@ impl<'p> Herd<'p> {
         self.alone.borrow_mut().1 = segment;
     }
 
-    fn fix(&self, place: usize, fixed: &mut [f64]) {
+    /// Works out what does not move of the series of an agent.
+    pub fn fix(&self, place: usize, fixed: &mut [f64]) {
         let inputs = &self.row(place)[3 * self.n + 2..];
         let input = |_: u32, column: u32| {
             let found = self.inputs.iter().position(|&input| input == column as usize);
@@ -365,7 +366,7 @@ impl<'p> Herd<'p> {
 }
 
 /// No agent is in a lane.
-const NOBODY: usize = usize::MAX;
+pub const NOBODY: usize = usize::MAX;
 
 /// The agents that are advanced at once.
 struct Lanes {

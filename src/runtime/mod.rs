@@ -43,6 +43,7 @@ pub mod observe;
 mod leap;
 mod tracks;
 mod herd;
+mod survey;
 mod cold;
 mod ahead;
 mod route;

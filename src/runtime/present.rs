@@ -88,6 +88,22 @@ impl Present {
         }
     }
 
+    /// Makes the states of many agents; those that run ahead are looked up together.
+    pub fn survey(&mut self, agents: &Agents<'_>, who: &[usize]) {
+        let (rows, stamp, time) = (&mut self.rows, self.stamp, self.time);
+        let is_ahead = |&agent: &usize| {
+            rows[agent].made[0] != stamp && agents.cold.is_cold(agent) && agents.cold.knows(agent, time)
+        };
+        let ahead: Vec<usize> = who.iter().copied().filter(is_ahead).collect();
+        agents.cold.survey(&ahead, time, &mut |agent, states| {
+            let row = &mut rows[agent];
+            row.states.clear();
+            row.states.extend_from_slice(states);
+            row.made[0] = stamp;
+        });
+        self.make(agents, who, Depth::States);
+    }
+
     fn make_one(&mut self, agents: &Agents<'_>, number: usize, depth: Depth) {
         if self.rows[number].made[depth as usize] == self.stamp {
             return;

@@ -96,6 +96,7 @@ impl<'p> Recorder<'p> {
                 continue;
             }
             self.records[number].n_samples += 1;
+            present.survey(agents, &self.records[number].roster);
             for k in 0..self.records[number].roster.len() {
                 let agent = self.records[number].roster[k];
                 self.row(agents, present, number, agent, micro, observer)?;
