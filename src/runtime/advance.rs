@@ -16,10 +16,11 @@ use crate::runtime::limits::Limits;
 use crate::runtime::population::{Agent, Agents, Slots};
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::integrate::{Integrator, Stuck};
+use crate::runtime::solve::method::Flow as _;
 use crate::runtime::solve::method::Stretch;
-use crate::runtime::solve::roots::{Known, Search, first_flip};
+use crate::runtime::solve::roots::{Curve, Known, Search, first_flip};
 use crate::runtime::solve::switch::{Regime, Switch};
-use crate::runtime::solve::{MethodName, Methods};
+use crate::runtime::solve::{MethodName, Methods, time_resolution};
 
 /// Counts of steps.
 #[derive(Clone, Debug, Default)]
@@ -304,6 +305,43 @@ impl Stepper {
         Advance::Turned(hits)
     }
 
+    /// Takes a group, which can go no further, to the kinks that it reaches within the resolution of time: beyond them the flow
+    /// as it is locked may not be defined (`sqrt(abs(time - 1))` at 1). False, and nothing is done, if there are none.
+    pub fn creep_to_kinks(
+        &mut self,
+        agents: &mut Agents<'_>,
+        group: &mut Group,
+        curves: &mut CurveRows,
+    ) -> bool {
+        let clock = group.clock;
+        let hits: Vec<(f64, KinkHit)> =
+            group.members.iter().flat_map(|&agent| kinks_at_hand(agents, agent, clock, curves)).collect();
+        let Some(end) = hits.iter().map(|&(time, _)| time).max_by(f64::total_cmp) else { return false };
+        let mut rates = Vec::new();
+        self.with_flow(agents, group, |_, x, _, flow| {
+            rates.resize(x.len(), 0.0);
+            flow.rates(clock, x, &mut rates);
+        });
+        if rates.iter().any(|rate| !rate.is_finite()) {
+            return false;
+        }
+        let (h, mut first) = (end - clock, 0);
+        for &member in &group.members {
+            let Agent { states, segment, .. } = &mut agents.agents[member];
+            let n = states.len();
+            let coefficients = segment.reset(clock, h, end, 2, n);
+            for ((pair, x), &rate) in coefficients.chunks_exact_mut(2).zip(states).zip(&rates[first..]) {
+                pair.copy_from_slice(&[*x, rate * h]);
+                *x += rate * h;
+            }
+            first += n;
+        }
+        group.clock = end;
+        group.integration.restart();
+        group.kinks = hits.into_iter().map(|(_, hit)| hit).collect();
+        true
+    }
+
     /// When the group's new segments first meet a kink, and all that they meet then.
     fn first_kinks(
         &mut self,
@@ -457,6 +495,37 @@ fn turn(agents: &mut Agents<'_>, hits: &[KinkHit]) {
     }
 }
 
+/// The kinks that an agent, whose segment ends at `clock`, reaches within the resolution of time after it, and when.
+fn kinks_at_hand(
+    agents: &Agents<'_>,
+    agent: usize,
+    clock: f64,
+    curves: &mut CurveRows,
+) -> Vec<(f64, KinkHit)> {
+    let flow = agents.flow(agent);
+    let slots = agents.slots(&flow.frame, &[agent]);
+    let mut at_hand = Vec::new();
+    for (number, kink) in flow.kinks.iter().enumerate() {
+        let lock = agents.agents[agent].aux[kink.lock];
+        let mut meets = |atom: &Atom, beyond: f64| {
+            let [g, rate, _] = AtomCurve::new(agents, atom, &slots, &[], curves).jet(clock);
+            let left = -g / rate;
+            if left >= 0.0 && left <= time_resolution(clock) {
+                let hit = KinkHit { agent, kink: number, before: lock, lock: beyond };
+                at_hand.push(((clock + left).next_up(), hit));
+            }
+        };
+        match &kink.kind {
+            KinkKind::Branch(atom) => meets(atom, 1.0 - lock),
+            KinkKind::Integer { below, above } => {
+                meets(below, lock - 1.0);
+                meets(above, lock + 1.0);
+            }
+        }
+    }
+    at_hand
+}
+
 /// When the new segment of an agent first meets a kink, and the value that its lock then takes.
 fn kink_time(
     agents: &Agents<'_>,
@@ -477,7 +546,7 @@ fn kink_time(
         let mut from = start;
         loop {
             match first_flip(&mut curve, from, until, known, pieces_max) {
-                Search::None | Search::Undecided => return None,
+                Search::None | Search::Along | Search::Undecided => return None,
                 Search::Flip(flip) => return Some(flip.time),
                 Search::Until(reached) => from = reached,
             }

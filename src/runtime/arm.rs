@@ -45,7 +45,10 @@ impl<'p> Engine<'p, '_> {
         state.periods = 0;
         self.draw_hazard(instance);
         for index in self.guards.atoms_of(instance) {
-            self.guards.atoms[index].slack = 0.0;
+            // What was on its boundary in this instant is so still, if nothing has moved.
+            if self.guards.atoms[index].certified != time {
+                self.guards.atoms[index].slack = 0.0;
+            }
             if !self.guards.atoms[index].left_out && !self.settle_far(index) {
                 self.settle(index, rule, &Written::default());
             }
@@ -55,6 +58,12 @@ impl<'p> Engine<'p, '_> {
         self.guards.rising[first..first + n_rising].fill(false);
         self.note_rising(instance);
         self.set_schedule(instance)
+    }
+
+    /// Whether an instance fires when nothing is left of a hazard.
+    pub fn is_hazard(&self, instance: u32) -> bool {
+        let transition = self.guards.definition(instance).origin.transition();
+        transition.is_some_and(|transition| matches!(transition.trigger, Trigger::Rate { .. }))
     }
 
     /// Takes an instance out, whose mode has just been left.
@@ -122,7 +131,7 @@ impl<'p> Engine<'p, '_> {
         self.curves.operations += kernel.operations();
         let folds = self.truths().gather(before.instance, kernel, &slots, Side::After);
         let g = truth::evaluate(&self.agents, &mut self.present, kernel, &slots, &folds);
-        let mut touched = false;
+        let (mut touched, mut enters) = (false, false);
         let unchanged = rule == Rule::Woken
             && folds.is_empty()
             && !self.leads_elsewhere(index, written)
@@ -145,13 +154,21 @@ impl<'p> Engine<'p, '_> {
             // is taken as it is.
             let rounding = if atom.smooth { self.rounding(kernel, &slots, &folds) } else { 0.0 };
             let clear = g.abs() > if unchanged { before.slack.max(rounding) } else { rounding };
+            let along = if unchanged { before.truth } else { closed(atom.relation, before.truth) };
+            let is_hazard = self.is_hazard(before.instance);
+            let mut decide = || self.decide(index, (g, rounding), along, &slots, &folds);
             match rule {
-                Rule::Rates => self.decide(index, g, rounding, &slots, &folds),
+                // What is left of a hazard is as likely to be next to nothing as anything else.
+                Rule::Rates if is_hazard => g < 0.0,
+                Rule::Rates => decide(),
                 Rule::Woken if unchanged && clear => before.truth,
                 Rule::Fresh | Rule::Woken if clear => g < 0.0,
-                Rule::Woken if unchanged => self.decide(index, g, rounding, &slots, &folds),
-                Rule::Fresh | Rule::Woken if atom.relation == Relation::Crossing => {
-                    self.decide(index, g, rounding, &slots, &folds)
+                Rule::Woken if unchanged => decide(),
+                Rule::Fresh | Rule::Woken if atom.relation == Relation::Crossing => decide(),
+                Rule::Fresh | Rule::Woken if atom.relation == Relation::Negative && atom.smooth => {
+                    // The infimum of the times at which it is true is this one (rule 3), though it is not true at it.
+                    enters = decide();
+                    enters
                 }
                 Rule::Fresh | Rule::Woken => closed(atom.relation, false),
             }
@@ -162,7 +179,7 @@ impl<'p> Engine<'p, '_> {
         let state = &mut self.guards.atoms[index];
         state.truth = truth;
         state.touched = touched;
-        state.rooted = rule == Rule::Woken && before.rooted && unchanged;
+        state.rooted = enters || rule == Rule::Woken && before.rooted && unchanged;
         let kept = unchanged && before.rooted;
         self.recertify(index, if kept { before.certified.max(time) } else { time });
         self.guards.atoms[index].settled = !(unchanged && before.slack == 0.0);
@@ -246,8 +263,15 @@ impl<'p> Engine<'p, '_> {
         self.queues.push_uncertified(due, self.window_end);
     }
 
-    /// Rule 3, "On the boundary": by the first of two rates that is not zero within rounding.
-    fn decide(&mut self, index: usize, g: f64, rounding: f64, slots: &Slots, folds: &[Folded<'_>]) -> bool {
+    /// Rule 3, "On the boundary": by the first of two rates that is not zero within rounding; `along` where neither decides.
+    fn decide(
+        &mut self,
+        index: usize,
+        (g, rounding): (f64, f64),
+        along: bool,
+        slots: &Slots,
+        folds: &[Folded<'_>],
+    ) -> bool {
         let (atom, _) = self.guards.atom_slots(&self.agents, index);
         let kernel = self.program.kernel(atom.rates);
         let jet = truth::jet(&self.agents, &mut self.present, kernel, slots, folds);
@@ -264,7 +288,7 @@ impl<'p> Engine<'p, '_> {
         match direction(&jet, &bounds) {
             Direction::Up => false,
             Direction::Down => true,
-            Direction::Along => closed(atom.relation, self.guards.atoms[index].truth),
+            Direction::Along => along,
         }
     }
 

@@ -72,7 +72,7 @@ impl Audit {
                 AtomCurve::new(&engine.agents, guard.atom, watch.slots(index), folds, &mut self.curves);
             let from = shadow.certified;
             match first_flip(&mut curve, from, to, known, engine.limits.pieces_max) {
-                Search::None | Search::Undecided => shadow.certified = to,
+                Search::None | Search::Along | Search::Undecided => shadow.certified = to,
                 Search::Until(until) => shadow.certified = until,
                 Search::Flip(flip) => {
                     shadow.certified = flip.time.max(from);

@@ -178,7 +178,7 @@ impl<'p> Jumping<'_, 'p> {
             let search = first_flip(&mut curve, s, end, Known { reach, ..known }, pieces_max);
             let Some(next) = next else { return (search, None) };
             match search {
-                Search::None => {}
+                Search::None | Search::Along => {}
                 Search::Flip(flip) if flip.time >= end => {}
                 Search::Flip(_) | Search::Until(_) | Search::Undecided => return (search, None),
             }
@@ -265,6 +265,8 @@ impl<'p> Jumping<'_, 'p> {
         loop {
             match first_flip(&mut curve, from, e, known, pieces_max) {
                 Search::None => return Ok(None),
+                // A surface that holds where it is zero has been reached.
+                Search::Along => return Ok(known.touching().then(|| Flip::touch(from))),
                 Search::Undecided => return Err(GivenUp),
                 Search::Flip(flip) => return Ok(Some(flip)),
                 Search::Until(reached) => from = reached,

@@ -70,7 +70,8 @@ impl Engine<'_, '_> {
             if !self.sleep_beyond(index, self.window_end) {
                 self.recertify(index, from);
                 // All else is certified up to `from`.
-                let time = from.min(self.next_cause()).min(self.recorder.next()).max(self.present.time);
+                let told = self.recorder.next().min(self.next_step());
+                let time = from.min(self.next_cause()).min(told).max(self.present.time);
                 cold.into_iter().for_each(|agent| self.thaw_at(agent, time));
             }
             return;
@@ -108,6 +109,11 @@ impl Engine<'_, '_> {
         let (search, leap) = self.search(atom, (&slots, &folds), from, to, known);
         match search {
             Search::None => self.certified(index, to),
+            Search::Along => {
+                self.certified(index, to);
+                let state = &mut self.guards.atoms[index];
+                (state.slack, state.settled) = (known.slack, known.settled);
+            }
             Search::Until(until) => self.certified(index, until),
             Search::Undecided => {
                 self.n_undecided += 1;

@@ -71,6 +71,8 @@ pub struct Queues {
     pub schedules: BinaryHeap<Due>,
     /// Groups, at their clocks; void if the clock has another value.
     pub clocks: BinaryHeap<Due>,
+    /// Cold agents of which every step is recorded, at the ends of their steps in the window at hand; void if they are not cold.
+    pub steps: BinaryHeap<Due>,
 }
 
 impl Queues {

@@ -216,6 +216,7 @@ impl Flow for GroupFlow<'_, '_> {
         let views = views(self.agents, &self.slots[0], self.absent, x);
         rows.fixed.resize(tape.fixed.len(), 0.0);
         rows.coefficients.resize(tape.n_coefficients(order), 0.0);
+        rows.is_polynomial = tape.is_polynomial();
         tape.fix(|slot, column| views[slot as usize].aux[column as usize], &mut rows.fixed);
         tape.expand(t, x, &rows.fixed, order, &mut rows.coefficients);
         true

@@ -33,10 +33,34 @@ impl Engine<'_, '_> {
             self.add_read(due.number as usize, &mut doubted);
         }
         doubted.into_iter().for_each(|agent| self.agents.cold.want_track(agent));
+        let outlook = Outlook { n_hot, n_tracked: self.agents.cold.n_tracked() };
+        let recorded = self.recorder.recorded_steps();
+        recorded.iter().for_each(|&agent| self.agents.cold.want_track(agent));
         self.agents.cold.make_tracks(self.present.time);
+        self.queue_steps(&recorded, until);
         self.follow_doubts(doubtful, until);
         self.has_thawed = false;
-        Outlook { n_hot, n_tracked: self.agents.cold.n_tracked() }
+        outlook
+    }
+
+    /// Has the steps of cold agents written that end in the window from the present to `until`.
+    fn queue_steps(&mut self, recorded: &[usize], until: f64) {
+        let now = self.present.time;
+        self.queues.steps.clear();
+        for &agent in recorded {
+            let ends = self.agents.cold.step_ends(agent).filter(|&end| now < end && end <= until);
+            let due = |time| Due { time, number: agent as u32, version: 0 };
+            self.queues.steps.extend(ends.map(due));
+        }
+    }
+
+    /// When the next step of a cold agent ends of which every step is recorded, s.
+    pub fn next_step(&mut self) -> f64 {
+        let Self { queues, agents, .. } = self;
+        while queues.steps.peek().is_some_and(|due| !agents.cold.is_cold(due.number as usize)) {
+            queues.steps.pop();
+        }
+        queues.steps.peek().map_or(f64::INFINITY, |due| due.time)
     }
 
     /// Has all hot agents run ahead but those whose flow does not let them, and those that comparisons read which will change.

@@ -6,10 +6,11 @@ use rustc_hash::FxHashMap;
 
 use crate::base::Span;
 use crate::codegen::program::{ClaimKind, ClaimSystem, Trigger};
+use crate::codegen::trace::Compared;
 use crate::runtime::act::{Claimed, Effect, Written, claims};
 use crate::runtime::arm::Rule;
 use crate::runtime::engine::Engine;
-use crate::runtime::failure::{Failure, Reason, contested};
+use crate::runtime::failure::{Failure, Place, Reason, contested};
 use crate::runtime::guards::Origin;
 use crate::runtime::observe::{Event, FalseAssert};
 use crate::runtime::population::Slots;
@@ -53,7 +54,9 @@ impl Engine<'_, '_> {
         let mut micro = 0;
         let mut touched_agents: BTreeSet<(usize, usize)> = BTreeSet::new();
         let mut concerned: Vec<u32> = candidates.iter().map(|candidate| candidate.instance).collect();
-        loop {
+        let mut births = 0;
+        // The loop ends an interrupted run; until then an instant without an end must not go on.
+        while !self.interrupted() {
             self.deliver();
             candidates.extend(self.turns());
             candidates.sort_unstable();
@@ -71,6 +74,10 @@ impl Engine<'_, '_> {
             let written = self.fire(&chosen, micro, &mut touched_agents)?;
             touched_agents.extend(written.born.iter().map(|&agent| (self.agents.number(agent), agent)));
             let fired: Vec<u32> = chosen.iter().map(|ranked| ranked.candidate.instance).collect();
+            births = if written.born.is_empty() { 0 } else { births + 1 };
+            if births > self.limits.microsteps_max {
+                return Err(self.goes_round(fired[0]).into());
+            }
             if self.notes.is_some() {
                 self.explain_writes(&written, &fired);
             }
@@ -155,10 +162,6 @@ impl Engine<'_, '_> {
         Ok((chosen, passed))
     }
 
-    fn is_hazard(&self, instance: u32) -> bool {
-        matches!(self.guards.definition(instance).trigger(), Some(Trigger::Rate { .. }))
-    }
-
     fn rank(&mut self, candidate: Candidate) -> Result<Ranked, Failure> {
         let slots = match candidate.by {
             By::Guard if self.is_hazard(candidate.instance) => {
@@ -226,7 +229,13 @@ impl Engine<'_, '_> {
                 .chain(effect.doomed.iter().map(|doomed| doomed.agent));
             for agent in agents {
                 if touched.insert((self.agents.number(agent), agent)) {
-                    self.recorder.before_write(&self.agents, &mut self.present, agent, self.observer)?;
+                    self.recorder.before_write(
+                        &self.agents,
+                        &mut self.present,
+                        agent,
+                        micro,
+                        self.observer,
+                    )?;
                 }
             }
         }
@@ -247,26 +256,28 @@ impl Engine<'_, '_> {
         if finding == Finding::Fine {
             return Ok(());
         }
+        let Finding::Zeno(limit_time) = finding else { return Err(self.goes_round(instance).into()) };
+        let (place, cycle, compared, span) = self.cycle(instance);
+        let count = self.limits.zeno_events;
+        Err(Reason::Zeno { place, cycle, count, limit_time, compared, span }.into())
+    }
+
+    /// One instant does not end.
+    fn goes_round(&mut self, instance: u32) -> Reason {
+        let (place, cycle, compared, span) = self.cycle(instance);
+        let limit = self.limits.microsteps_max;
+        Reason::MicrostepLimit { place, limit, cycle, compared, span }
+    }
+
+    /// Where an instance fires again and again: its agent, the transitions that fire in turn, what it compares, its span.
+    fn cycle(&mut self, instance: u32) -> (Place, Vec<String>, Vec<Compared>, Span) {
         let agent = self.guards.instances[instance as usize].roots[0] as usize;
         let place = self.place(agent);
         let compared = self.told(instance);
         let (_, span): (&str, Span) = self.label(instance);
-        let cycle = self
-            .repetitions
-            .cycle(instance)
-            .iter()
-            .map(|&other| format!("`{}`", self.label(other).0))
-            .collect();
-        Err(match finding {
-            Finding::Zeno(limit_time) => {
-                let count = self.limits.zeno_events;
-                Reason::Zeno { place, cycle, count, limit_time, compared, span }.into()
-            }
-            Finding::Fine | Finding::Cycle => {
-                let limit = self.limits.microsteps_max;
-                Reason::MicrostepLimit { place, limit, cycle, compared, span }.into()
-            }
-        })
+        let cycle = self.repetitions.cycle(instance);
+        let cycle = cycle.iter().map(|&other| format!("`{}`", self.label(other).0)).collect();
+        (place, cycle, compared, span)
     }
 
     /// Writes the rows of the event log for one firing.

@@ -7,7 +7,9 @@ use crate::codegen::series::SeriesTape;
 use crate::math::{Numbers, Wide};
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::segment::{N_MAX, Segment};
-use crate::runtime::solve::series_step::{bounds, errors, reach, sum_up};
+use crate::runtime::solve::series_step::{
+    LOOKS, bounds, errors, inside, is_quiet, look, look_inside, reach, sum_up,
+};
 
 /// The series of a flow, with all that a step depends on besides time and states.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +34,7 @@ pub struct LeapRows<T> {
     /// The terms of each state's series at the end of the step.
     pub terms: Vec<T>,
     ends: Vec<T>,
+    inside: Vec<T>,
     /// The error of each state in the last step.
     pub errors: Vec<T>,
     /// Bounds of each state over the last step: [`Leaps::bound`].
@@ -50,6 +53,7 @@ impl<T: Numbers> LeapRows<T> {
             rates: vec![zero; leaps.tape.n_coefficients(1)],
             terms: vec![zero; leaps.tape.n_states * (leaps.order + 1)],
             ends: vec![zero; leaps.tape.n_states],
+            inside: vec![zero; leaps.tape.n_states],
             errors: vec![zero; leaps.tape.n_states],
             lows: vec![zero; leaps.tape.n_states],
             highs: vec![zero; leaps.tape.n_states],
@@ -84,6 +88,12 @@ impl Leaps<'_> {
             *end = row[1];
         }
         errors(&rows.terms, order, h, &rows.ends, &mut rows.errors);
+        if !self.tape.is_polynomial() {
+            let quiet = is_quiet(&rows.terms, order, self.accuracy);
+            if quiet.is_any() {
+                self.look_inside((t, h), quiet, rows);
+            }
+        }
         let mut good = end.zip(t, |end, t| if end > t { 1.0 } else { 0.0 });
         for i in 0..n {
             let size = x[i].zip(x_new[i], |x, x_new| larger(x.abs(), x_new.abs()));
@@ -94,6 +104,20 @@ impl Leaps<'_> {
             good = good.zip(accepted, |good, accepted| good * accepted);
         }
         Leap { h, end, good }
+    }
+
+    /// Looks at the rates between the ends of a quiet step.
+    #[inline(always)]
+    fn look_inside<T: Expand>(&self, (t, h): (T, T), quiet: T, rows: &mut LeapRows<T>) {
+        for share in (0..LOOKS).map(look) {
+            inside(&rows.terms, self.order, share, &mut rows.inside);
+            let time = t.zip(h, |t, h| t + share * h);
+            T::expand(self.tape, time, &rows.inside, &rows.fixed, 1, &mut rows.rates);
+            for (end, row) in rows.ends.iter_mut().zip(rows.rates.chunks_exact(2)) {
+                *end = row[1];
+            }
+            look_inside(&rows.terms, (self.order, share), (h, quiet), &rows.ends, &mut rows.errors);
+        }
     }
 
     /// Bounds the states over the step from `x` to `x_new` that `rows` holds.
@@ -115,6 +139,9 @@ pub struct Covering {
 
 /// Numbers in which a series can be expanded; what does it is compiled once.
 pub trait Expand: Numbers {
+    /// Whether any of the numbers is not 0.
+    fn is_any(self) -> bool;
+
     /// [`SeriesTape::expand_numbers`].
     fn expand(
         tape: &SeriesTape,
@@ -127,12 +154,22 @@ pub trait Expand: Numbers {
 }
 
 impl Expand for f64 {
+    #[inline(always)]
+    fn is_any(self) -> bool {
+        self != 0.0
+    }
+
     fn expand(tape: &SeriesTape, time: f64, states: &[f64], fixed: &[f64], order: usize, rows: &mut [f64]) {
         tape.expand(time, states, fixed, order, rows);
     }
 }
 
 impl Expand for Wide {
+    #[inline(always)]
+    fn is_any(self) -> bool {
+        self.0.iter().any(|&lane| lane != 0.0)
+    }
+
     fn expand(
         tape: &SeriesTape,
         time: Wide,

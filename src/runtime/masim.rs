@@ -48,7 +48,8 @@ impl Engine<'_, '_> {
             let cover = self.cover().min(until);
             self.certify_up_to(cover);
             if self.interrupted() {
-                self.present.go(cover.max(self.present.time));
+                let known = self.known_until(cover);
+                self.present.go(known);
                 return Ok(Some(End::Interrupted));
             }
             if std::mem::take(&mut self.has_thawed) {
@@ -56,8 +57,10 @@ impl Engine<'_, '_> {
             }
             let cause = self.next_cause();
             self.watch_up_to(cover.min(cause));
-            let sample = self.recorder.next();
-            if sample < cause && sample <= cover {
+            let (sample, step) = (self.recorder.next(), self.next_step());
+            if step < cause && step <= cover && step <= sample {
+                self.record_step()?;
+            } else if sample < cause && sample <= cover {
                 self.recorder.sample(&self.agents, &mut self.present, sample, self.observer)?;
             } else if cause < f64::INFINITY
                 && cause <= self.time_end
@@ -73,6 +76,12 @@ impl Engine<'_, '_> {
                 self.advance_laggard(cover)?;
             }
         }
+    }
+
+    /// Writes the row of the step of a cold agent that ends next.
+    fn record_step(&mut self) -> Result<(), Failure> {
+        let Some(due) = self.queues.steps.pop() else { return Ok(()) };
+        self.recorder.step(&self.agents, &mut self.present, due.number as usize, due.time, self.observer)
     }
 
     /// Rule 6: groups, locks, entry actions, arming, micro-steps at t = 0.
@@ -106,6 +115,12 @@ impl Engine<'_, '_> {
         self.judge_claims(&claims)?;
         let all: Vec<u32> = (0..self.guards.instances.len() as u32).collect();
         self.set_gates(&all)
+    }
+
+    /// Up to when nothing happens that has not been carried out, s; not beyond the cover.
+    fn known_until(&mut self, cover: f64) -> f64 {
+        let certified = self.queues.uncertified.peek().map_or(f64::INFINITY, |due| due.time);
+        cover.min(certified).min(self.next_cause()).max(self.present.time)
     }
 
     /// The end: the last rows, and the state of every agent at T (rule 12).
@@ -174,16 +189,23 @@ impl Engine<'_, '_> {
                 self.doubt(&members, cover);
                 Ok(())
             }
-            Advance::Blocked(obstacle) => self.unblock(obstacle, cover),
+            Advance::Blocked(obstacle) => self.unblock(number, obstacle, cover),
         }
     }
 
     /// I5: no step is possible. An event within the resolution of time may be what ends this flow; else the run fails.
-    fn unblock(&mut self, obstacle: Obstacle, cover: f64) -> Result<(), Failure> {
+    fn unblock(&mut self, group: usize, obstacle: Obstacle, cover: f64) -> Result<(), Failure> {
         self.certify_at(cover);
         let cause = self.next_cause();
         if cause <= cover + time_resolution(cover) && cause <= self.time_end {
             return self.execute(cause);
+        }
+        eprintln!("blocked at {} {obstacle:?}", self.groups.groups[group].clock);
+        let crept =
+            self.stepper.creep_to_kinks(&mut self.agents, &mut self.groups.groups[group], &mut self.curves);
+        if crept {
+            self.queue_clock(group);
+            return Ok(());
         }
         self.present.go(cover);
         Err(match obstacle {

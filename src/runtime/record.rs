@@ -131,15 +131,16 @@ impl<'p> Recorder<'p> {
         self.write_every_step(agents, present, agent, 0, Repeat::Never, observer)
     }
 
-    /// Writes the near side of an event.
+    /// Writes the near side of an event in a micro-step.
     pub fn before_write(
         &mut self,
         agents: &Agents<'_>,
         present: &mut Present,
         agent: usize,
+        micro: usize,
         observer: &mut dyn Observer,
     ) -> Result<(), Failure> {
-        self.write_every_step(agents, present, agent, 0, Repeat::Never, observer)
+        self.write_every_step(agents, present, agent, micro, Repeat::Never, observer)
     }
 
     /// Writes the far side of an event for the agents that it wrote.
@@ -162,6 +163,15 @@ impl<'p> Recorder<'p> {
     /// Whether any record asks for every step.
     pub fn wants_steps(&self) -> bool {
         self.records.iter().any(|recording| recording.record.every.is_none())
+    }
+
+    /// The agents of which every step is recorded, rising.
+    pub fn recorded_steps(&self) -> Vec<usize> {
+        let every_step = self.records.iter().filter(|recording| recording.record.every.is_none());
+        let mut agents: Vec<usize> = every_step.flat_map(|recording| &recording.roster).copied().collect();
+        agents.sort_unstable();
+        agents.dedup();
+        agents
     }
 
     fn write_every_step(

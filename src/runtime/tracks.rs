@@ -132,6 +132,11 @@ impl Tracks {
         std::iter::successors(number(first), move |&step| number(self.steps[step].next))
     }
 
+    /// Where the steps of a track end, s.
+    pub fn ends(&self, place: usize) -> impl Iterator<Item = f64> {
+        self.steps_of(place).map(|step| self.steps[step].end)
+    }
+
     /// The number of the step that covers `t`: of two, the first.
     pub fn covering(&self, place: usize, t: f64) -> Option<usize> {
         self.steps_of(place)

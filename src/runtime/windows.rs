@@ -72,12 +72,12 @@ impl Engine<'_, '_> {
         }
     }
 
-    /// Herds for those who may be cold; none if every step is recorded or watched, or for very few.
+    /// Herds for those who may be cold; none if every step is watched, or for very few.
     fn make_herds(&mut self) {
         let is_watched = !self.program.properties().is_empty();
         let stay_few =
             self.agents.n_living() <= FEW && self.program.action_lists().all(|list| list.births().is_empty());
-        if self.recorder.wants_steps() || is_watched || !self.by_series || stay_few {
+        if is_watched || !self.by_series || stay_few {
             return;
         }
         let accuracy = self.stepper.accuracy;

@@ -214,6 +214,11 @@ impl SeriesTape {
         self.n_rows() * (order + 1)
     }
 
+    /// Whether the states are polynomials of the time, whatever they begin from.
+    pub fn is_polynomial(&self) -> bool {
+        self.lengths[..self.n_states].iter().all(|&length| length < ENDLESS)
+    }
+
     /// How many arithmetic operations an expansion takes, a function such as `sin` as one.
     pub fn operations(&self, order: usize) -> u64 {
         self.operations[order]

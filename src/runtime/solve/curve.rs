@@ -62,6 +62,8 @@ impl Flip {
 pub enum Search {
     /// No change in (s, e].
     None,
+    /// Nor that: it is on its boundary at s, and stays there.
+    Along,
     /// The first change.
     Flip(Flip),
     /// No change up to here; the limit of pieces was reached.
@@ -156,11 +158,15 @@ impl<'a> Turned<'a> {
         }
     }
 
-    /// Whether f is near the boundary at all of many points of [s, e], which lie at no regular distance.
-    pub fn stays_within_rounding(&mut self, s: f64, e: f64) -> bool {
+    /// Whether f is within rounding of zero, or within `band`, at all of many points of [s, e], which lie at no regular distance.
+    pub fn stays_within(&mut self, s: f64, e: f64, band: f64) -> bool {
         let share = |k: u32| (f64::from(k) * 0.618_033_988_749_894_9).fract();
-        let points = [s, e, 0.5 * (s + e)].into_iter().chain((1..SAMPLES).map(|k| s + (e - s) * share(k)));
-        self.curve.smooth() && points.into_iter().all(|t| self.value(t).abs() <= LEAVES * self.rounding(t)[0])
+        let points = [e, s, 0.5 * (s + e)].into_iter().chain((1..SAMPLES).map(|k| s + (e - s) * share(k)));
+        let is_within = |f: &mut Self, t: f64| {
+            let size = f.value(t).abs();
+            size <= band || size <= LEAVES * f.rounding(t)[0]
+        };
+        self.curve.smooth() && points.into_iter().all(|t| is_within(self, t))
     }
 
     /// Whether g is no number at some points of [s, e], its ends among them.

@@ -37,6 +37,8 @@ pub struct SeriesRows {
     pub coefficients: Vec<f64>,
     /// What does not move.
     pub fixed: Vec<f64>,
+    /// Whether the states are polynomials of the time.
+    pub is_polynomial: bool,
 }
 
 /// What a compiled step of Tsitouras' pair reads and fills in, for n equations.

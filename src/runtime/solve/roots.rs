@@ -46,12 +46,13 @@ pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_ma
                 Ok(entry) => entry,
                 Err(flip) => return Search::Flip(flip),
             };
+            if looked_at == 0 && entry == Entry::Boundary && f.stays_within(s, e, known.slack) {
+                let is_given = known.settled || !known.touching();
+                return if is_given { Search::Along } else { Search::Flip(Flip::touch(s)) };
+            }
             known_here.slack = 0.0;
             known_here.settled = false;
             known_here.grazed = false;
-            if looked_at == 0 && entry == Entry::Boundary && f.stays_within_rounding(s, e) {
-                return if known.touching() { Search::Flip(Flip::touch(s)) } else { Search::None };
-            }
         }
         looked_at += 1;
         if f.curve.given_up() {
@@ -97,7 +98,7 @@ fn beyond_graze(f: &mut Turned<'_>, s: f64, e: f64, known: &Known) -> Option<f64
 /// is one.
 fn along(f: &mut Turned<'_>, pieces: &mut Vec<(f64, f64, Entry)>, known: &Known) -> Option<Flip> {
     let s = pieces.last()?.0;
-    let longest = (0..pieces.len()).find(|&k| f.stays_within_rounding(s, pieces[k].1))?;
+    let longest = (0..pieces.len()).find(|&k| f.stays_within(s, pieces[k].1, 0.0))?;
     pieces.truncate(longest);
     known.touching().then_some(Flip::touch(s))
 }

@@ -105,8 +105,12 @@ impl Segment {
             let moved = &mut moved[..n];
             moved.copy_from_slice(c);
             shift(moved, middle);
-            let rounding = |order| spread(c, middle.abs(), order) * (8 * n) as f64 * f64::EPSILON;
             let (d, dd) = (moved.get(1).copied().unwrap_or(0.0), moved.get(2).copied().unwrap_or(0.0));
+            // A rate at a point is a coefficient that was made by a product with h, divided by h again.
+            let own = |value: f64| if s == e { 4.0 * f64::EPSILON * value.abs() } else { 0.0 };
+            let own = [0.0, own(d), own(2.0 * dd)];
+            let rounding =
+                |order| spread(c, middle.abs(), order) * (8 * n) as f64 * f64::EPSILON + own[order];
             let (scale, square) = (1.0 / self.h, 1.0 / (self.h * self.h));
             x[i] = around(moved[0], spread(moved, radius, 0), rounding(0));
             dx[i] = around(d * scale, spread(moved, radius, 1) * scale, rounding(1) * scale);

@@ -61,14 +61,64 @@ pub fn sum_up<T: Numbers>(coefficients: &[T], order: usize, h: T, terms: &mut [T
 pub fn errors<T: Numbers>(terms: &[T], order: usize, h: T, rates: &[T], errors: &mut [T]) {
     let n_terms = order + 1;
     for ((error, rate), terms) in errors.iter_mut().zip(rates).zip(terms.chunks_exact(n_terms)) {
-        let slope = (1..n_terms)
-            .rev()
-            .fold(T::all(0.0), |sum, k| sum.zip(terms[k], |sum, term| sum + k as f64 * term));
-        let defect = rate.zip(h, |rate, h| h * rate).zip(slope, |change, slope| (change - slope).abs());
         let last =
             terms[order].zip(terms[order - 1], |last, before| larger(last.abs(), FALLEN * before.abs()));
-        let share = 1.0 / n_terms as f64;
-        *error = last.zip(defect, |last, defect| larger(last, defect * share));
+        *error = last.zip(defect(terms, 1.0, h, *rate), larger);
+    }
+}
+
+/// h / (p + 1) times what a rate differs from the slope of its series in a point of the step: at this share of it.
+#[inline(always)]
+fn defect<T: Numbers>(terms: &[T], share: f64, h: T, rate: T) -> T {
+    let n_terms = terms.len();
+    let slope = (1..n_terms)
+        .rev()
+        .fold(T::all(0.0), |sum, k| sum.zip(terms[k], |sum, term| sum * share + k as f64 * term));
+    let change = rate.zip(h, |rate, h| h * rate);
+    change.zip(slope, |change, slope| (change - slope).abs() * (1.0 / n_terms as f64))
+}
+
+/// At so many points between its ends a step is looked at that is quiet.
+pub const LOOKS: usize = 15;
+
+/// The share of a step at which the point lies with this number, from 0: at no regular distance.
+#[inline(always)]
+pub fn look(number: usize) -> f64 {
+    ((number + 1) as f64 * 0.618_033_988_749_894_9) % 1.0
+}
+
+/// 1 where the third and the fourth terms of all states are within the accuracy, else 0. The step is *quiet*: its series says
+/// next to nothing, and cannot see what the flow may do before the step ends (a pulse that is still to come).
+#[inline(always)]
+pub fn is_quiet<T: Numbers>(terms: &[T], order: usize, accuracy: Accuracy) -> T {
+    terms.chunks_exact(order + 1).fold(T::all(1.0), |quiet, terms| {
+        let size = terms[3].zip(terms[4], |third, fourth| larger(third.abs(), fourth.abs()));
+        let allowed = terms[0].map(|x| accuracy.absolute + accuracy.tolerance * x.abs());
+        quiet.zip(size.zip(allowed, |size, allowed| if size <= allowed { 1.0 } else { 0.0 }), |a, b| a * b)
+    })
+}
+
+/// The states at this share of a step.
+#[inline(always)]
+pub fn inside<T: Numbers>(terms: &[T], order: usize, share: f64, x: &mut [T]) {
+    for (x, terms) in x.iter_mut().zip(terms.chunks_exact(order + 1)) {
+        let sum = |sum: T, term: &T| sum.zip(*term, |sum, term| sum * share + term);
+        *x = terms.iter().rev().fold(T::all(0.0), sum);
+    }
+}
+
+/// Widens the errors of a quiet step by the rates at this share of it.
+#[inline(always)]
+pub fn look_inside<T: Numbers>(
+    terms: &[T],
+    (order, share): (usize, f64),
+    (h, quiet): (T, T),
+    rates: &[T],
+    errors: &mut [T],
+) {
+    for ((error, rate), terms) in errors.iter_mut().zip(rates).zip(terms.chunks_exact(order + 1)) {
+        let seen = error.zip(defect(terms, share, h, *rate), larger);
+        *error = quiet.choose(seen, *error);
     }
 }
 

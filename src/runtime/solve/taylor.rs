@@ -4,12 +4,14 @@
 //! the dense output too, and its value at the end is the new state. The error is the largest of three: the last term, the
 //! one before it less e^2, and h / (p + 1) times what the rates at the end differ from the slope of the series there. The last
 //! one costs an evaluation, and sees what a series cannot: that it was continued beyond a branch point, on which the
-//! flow has no analytic continuation (`x' = -sqrt(x)` at 0), and that its last terms vanish by chance.
+//! flow has no analytic continuation (`x' = -sqrt(x)` at 0), and that its last terms vanish by chance. A step whose series says
+//! next to nothing is looked at between its ends, too: a pulse that comes later (`sin(time)^50` from 0 on) leaves no
+//! trace in the terms, and may be over at the end.
 
 use crate::runtime::solve::control::{Accuracy, Pace};
 use crate::runtime::solve::method::{Flow, Method, SeriesRows, Start, Stretch, Trial};
 use crate::runtime::solve::segment::{N_MAX, Segment};
-use crate::runtime::solve::series_step::{self, errors, sum_up};
+use crate::runtime::solve::series_step::{self, LOOKS, errors, inside, is_quiet, look, look_inside, sum_up};
 use crate::runtime::solve::tsit5::{self, Tsit5};
 
 /// The most that the step of another method, should one follow, may be longer.
@@ -24,6 +26,10 @@ pub struct Taylor {
     is_series: bool,
     /// Of each state the terms of the last trial at its end: c_k h^k.
     terms: Vec<f64>,
+    /// States within a step, and their rates.
+    inside: Vec<f64>,
+    /// By which the step at hand has been chosen.
+    accuracy: Accuracy,
     other: Tsit5,
 }
 
@@ -35,7 +41,27 @@ impl Taylor {
             rows: SeriesRows::default(),
             is_series: false,
             terms: Vec::new(),
+            inside: Vec::new(),
+            accuracy: Accuracy { tolerance, absolute: tolerance },
             other: Tsit5::default(),
+        }
+    }
+}
+
+impl Taylor {
+    /// Looks at the rates between the ends of a step, if it is quiet.
+    fn look_inside(&mut self, &Start { t, h, .. }: &Start<'_>, flow: &mut dyn Flow, trial: &mut Trial) {
+        let quiet = is_quiet(&self.terms, self.order, self.accuracy);
+        if quiet == 0.0 {
+            return;
+        }
+        let n = trial.x_new.len();
+        self.inside.resize(2 * n, 0.0);
+        let (x, rates) = self.inside.split_at_mut(n);
+        for share in (0..LOOKS).map(look) {
+            inside(&self.terms, self.order, share, x);
+            flow.rates(t + share * h, x, rates);
+            look_inside(&self.terms, (self.order, share), (h, quiet), rates, &mut trial.error);
         }
     }
 }
@@ -56,6 +82,7 @@ impl Method for Taylor {
 
     fn reach(&mut self, t: f64, x: &[f64], accuracy: Accuracy, flow: &mut dyn Flow) -> Option<f64> {
         self.is_series = flow.series(t, x, self.order, &mut self.rows);
+        self.accuracy = accuracy;
         if self.is_series {
             let h = series_step::reach(&self.rows.coefficients, x.len(), self.order, accuracy);
             self.is_series = h > 0.0;
@@ -74,6 +101,9 @@ impl Method for Taylor {
         sum_up(&self.rows.coefficients, self.order, h, &mut self.terms, &mut trial.x_new);
         flow.rates(t + h, &trial.x_new, &mut trial.rates);
         errors(&self.terms, self.order, h, &trial.rates, &mut trial.error);
+        if !self.rows.is_polynomial {
+            self.look_inside(start, flow, trial);
+        }
         trial.pace = Pace::Free { order: self.order as f64, grow: GROW };
     }
 
