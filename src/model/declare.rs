@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::context::{
     AgentNames, Body, Context, Definition, Global, GlobalKind, Member, PairNames, Progress,
 };
-use super::error::{LimitError, NameError, TypeError};
+use super::error::{InteractionError, LimitError, NameError, TypeError};
 use super::ir::{AgentType, Event, Initials, Interaction, Link, Mode, ModeId, Type, TypeId, Variable};
 use super::types::{Quantity, Slot, Ty};
 use crate::base::{Arena, Span};
@@ -322,9 +322,8 @@ impl<'a> Context<'a> {
             }
         }
         let [a, b] = item.formals.as_slice() else {
-            let count = item.formals.len();
-            let what = if count == 1 { "participant" } else { "participants" };
-            return self.refuse(format!("interactions with {count} {what}"), item.name.span);
+            let (count, span) = (item.formals.len(), item.name.span);
+            return self.report(InteractionError::Participants { count, span });
         };
         if a.name.text == b.name.text {
             let name = b.name.text.clone();

@@ -11,6 +11,7 @@ pub use crate::model::collective::{Aggregate, Quantifier};
 pub use crate::model::integrator::Integrator;
 pub use crate::model::kinds::{Inside, ParamValue};
 use crate::model::limits::Limits;
+pub use crate::model::machinery::Machinery;
 
 mod action;
 
@@ -540,6 +541,8 @@ pub struct Run {
     pub seed: u64,
     /// The method of integration.
     pub integrator: Integrator,
+    /// How it is computed.
+    pub machinery: Machinery,
     /// Trajectories to write.
     pub records: Vec<Record>,
     /// The file of the event log.

@@ -136,11 +136,10 @@ impl<'a> Context<'a> {
             _ => {
                 let value = self.lower(scope, expr);
                 let fitted = self.fit(value, Ty::Link(ty), span, "what a link leads to");
-                match (fitted.ty, value.ty) {
-                    (Ty::Wrong, _) => None,
-                    (_, Ty::Nobody) => Some(LinkTarget::Nobody),
-                    _ => Some(LinkTarget::Agent(fitted.id)),
+                if fitted.ty != Ty::Wrong {
+                    self.cases_of(fitted, test, span, cases);
                 }
+                return;
             }
         };
         cases.extend(target.map(|target| LinkCase { condition, target, span }));

@@ -6,6 +6,7 @@
 //! not be there. Many errors are reported in one run, none of them twice.
 
 mod integrator;
+pub mod machinery;
 pub mod limits;
 mod applied;
 mod kinds;
@@ -28,6 +29,7 @@ mod context;
 mod slot;
 mod modes;
 mod declare;
+mod choice;
 mod expression;
 mod resolve;
 mod call;

@@ -3,6 +3,7 @@
 //! What a test expects follows from the reference by hand; flows are polynomials where only events matter.
 
 mod rule_01_links;
+mod rule_01_choice;
 mod rule_01_state;
 mod rule_02_arming;
 mod rule_03_instant;
