@@ -114,9 +114,9 @@ impl<'a> Context<'a> {
         let links = links.map(|link| ("parameter", &link.name, link.span));
         let all = params.chain(states).chain(discretes).chain(links);
         let missing = all.filter(|(_, name, _)| {
-            let twice = self.agents[ty.index()].members.get(name.as_str());
-            let twice = matches!(twice, Some((Member::Twice, _)));
-            !twice && !given.contains_key(name.as_str()) && !self.declared_with_value(ty, name)
+            let member = self.agents[ty.index()].members.get(name.as_str());
+            let is_named = member.is_some_and(|(member, _)| *member != Member::Twice);
+            is_named && !given.contains_key(name.as_str()) && !self.declared_with_value(ty, name)
         });
         let missing = missing.map(|(kind, name, declared)| (kind, name.clone(), declared));
         for (kind, name, declared) in missing.collect::<Vec<_>>() {

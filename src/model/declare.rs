@@ -39,6 +39,7 @@ impl<'a> Context<'a> {
                     self.only_one("system", block.span, &mut system);
                     for instance in &block.instances {
                         self.declare_global(&instance.name, GlobalKind::Instance);
+                        self.instances.push(instance);
                     }
                 }
                 Item::Run(block) => self.only_one("run", block.span, &mut run),
@@ -105,6 +106,7 @@ impl<'a> Context<'a> {
             events: Vec::new(),
             lets: Vec::new(),
             declared: Vec::new(),
+            memberships: Vec::new(),
             initials: Initials::default(),
             modes: Arena::from_iter([root]),
             transitions: Vec::new(),

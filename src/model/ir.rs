@@ -229,8 +229,10 @@ pub enum ExprKind {
 pub struct Binder {
     /// As written.
     pub name: String,
-    /// What it ranges over.
+    /// The type of what it ranges over.
     pub ty: TypeId,
+    /// The number of the name of `system` that it ranges over; none: all agents of the type. The filter says so, too.
+    pub block: Option<usize>,
     /// Where it is bound.
     pub span: Span,
 }
@@ -257,6 +259,8 @@ pub struct AgentType {
     pub span: Span,
     /// Numeric parameters (constant during a run).
     pub params: Vec<Variable>,
+    /// Names of `system` that anything asks for, by number, and the parameter that says whether an agent belongs to it.
+    pub memberships: Vec<(usize, usize)>,
     /// Continuous states.
     pub states: Vec<Variable>,
     /// Discrete variables.
@@ -346,6 +350,8 @@ pub struct Link {
 pub struct Set {
     /// The type.
     pub ty: TypeId,
+    /// The number of the name of `system` that they belong to; none: all of the type.
+    pub block: Option<usize>,
     /// The link to the first.
     pub first: usize,
     /// How many there are at t = 0.

@@ -33,6 +33,7 @@ mod choice;
 mod expression;
 mod resolve;
 mod call;
+mod membership;
 mod quantifier;
 mod overrides;
 mod draw;
@@ -131,6 +132,7 @@ pub fn check(ast: &Ast, sources: &mut SourceMap, files: &mut dyn Files, settings
     initial::initial_values(&mut context);
     watch::fill(&mut context, &items);
     run::settle(&mut context, &items, settings);
+    membership::settle(&mut context);
     population::populate(&mut context, &items);
     run::trajectories(&mut context, &items, settings);
     consistency::check_dimensions(&mut context);

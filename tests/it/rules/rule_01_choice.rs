@@ -122,6 +122,8 @@ fn rule_10_a_flow_does_not_read_a_chosen_agent_that_may_be_none() {
 
 #[test]
 fn rule_01_a_chosen_agent_is_no_value_that_is_kept() {
-    let told = refused("agent A { link next: A  let who = if time < 1 then self else next  state x = 0  flow { x' = 1 } }");
+    let told = refused(
+        "agent A { link next: A  let who = if time < 1 then self else next  state x = 0  flow { x' = 1 } }",
+    );
     assert!(told.contains("HY0225"), "{told}");
 }
