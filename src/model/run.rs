@@ -84,7 +84,7 @@ const GAMMA: Number = Number {
     name: "gamma",
     needs: "a number from 0, below 1",
     dimension: Some(Dimension::ONE),
-    allowed: |value| value >= 0.0 && value < 1.0,
+    allowed: |value| (0.0..1.0).contains(&value),
 };
 
 /// A setting that is a length of time.
@@ -103,7 +103,7 @@ const fn count(name: &'static str) -> Number {
         name,
         needs: "a whole number from 1 to 2^31",
         dimension: Some(Dimension::ONE),
-        allowed: |value| value.fract() == 0.0 && value >= 1.0 && value <= 2_147_483_648.0,
+        allowed: |value| value.fract() == 0.0 && (1.0..=2_147_483_648.0).contains(&value),
     }
 }
 
@@ -262,7 +262,7 @@ impl<'a> Context<'a> {
     }
 
     fn unknown_setting(&mut self, name: &ast::Name) {
-        let similar = closest(&name.text, KNOWN.into_iter());
+        let similar = closest(&name.text, KNOWN);
         self.report(RunError::Unknown { name: name.text.clone(), span: name.span, similar });
     }
 
