@@ -283,12 +283,21 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// `cars[3]` in an expression.
-    pub fn lower_index(&mut self, scope: &mut Scope<'a>, base: &'a ast::Expr, span: Span) -> Value {
+    /// `xs[3]` in an expression.
+    pub fn lower_index(
+        &mut self,
+        scope: &mut Scope<'a>,
+        base: &'a ast::Expr,
+        place: &'a ast::Expr,
+        span: Span,
+    ) -> Value {
         let value = self.lower(scope, base);
+        if let Ty::List(list) = value.ty {
+            return self.lower_element(scope, list, (base, place), span);
+        }
         if value.ty != Ty::Wrong {
             let found = self.describe(value.ty);
-            let needs = "an array of `system`, and only there";
+            let needs = "a list, or in `system` an array of agents";
             self.report(TypeError::Operand { operator: "[ ]".to_string(), needs, found, span: base.span });
         }
         self.wrong(span)
