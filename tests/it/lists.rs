@@ -88,6 +88,8 @@ fn beside_the_list_there_is_nothing() {
         "flow { x' = 1 }  out: after 1 { n := 7 }  never: when x >= 2 and xs[n] >= 0 { }  always_: when x >= 2 { }",
     ));
     assert_eq!(run.log(), ["0 A.out a", "0 A.always_ a"]);
-    let told = refused(&"let xs = [1, 2]  agent A { state x = xs[index]  flow { x' = 0 } }  system { a = A[3]() }  run { until 1 }".to_string());
+    let told = refused(
+        "let xs = [1, 2]  agent A { state x = xs[index]  flow { x' = 0 } }  system { a = A[3]() }  run { until 1 }",
+    );
     assert!(told.contains("HY0263"), "{told}");
 }
