@@ -3,7 +3,7 @@
 use super::context::{Context, Global, GlobalKind, Meaning, Scope, Value};
 use super::error::{ModeError, NameError, TypeError};
 use super::expression::join_numbers;
-use super::ir::{ExprKind, FunctionId};
+use super::ir::FunctionId;
 use super::suggest::closest;
 use super::types::Ty;
 use crate::base::Span;
@@ -77,7 +77,7 @@ impl<'a> Context<'a> {
                 self.report(ModeError::EdgeOutsideGuard { name: name.clone(), span });
                 return self.wrong(span);
             }
-            "table" => return self.lower_table(scope, args, span),
+            "table" | "spline" => return self.lower_table(scope, name, args, span),
             "csv" | "Uniform" | "Normal" | "Exponential" => {
                 let (why, help) = if name == "csv" {
                     ("is not a value", "it stands behind `from` in `system`")
@@ -199,6 +199,6 @@ impl<'a> Context<'a> {
         values.extend(signature.formals.iter().skip(args.len()).filter_map(|(_, default)| *default));
         let wrong = values.iter().any(|value| value.ty == Ty::Wrong);
         let ty = if wrong { Ty::Wrong } else { signature.result.ty };
-        self.push(ExprKind::Call(function, values.iter().map(|value| value.id).collect()), ty, span)
+        self.call_by_cases(function, values, ty, span)
     }
 }

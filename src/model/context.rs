@@ -278,6 +278,8 @@ pub(super) struct Context<'a> {
     pub goals: Vec<Goal>,
     /// The names of the file.
     pub globals: FxHashMap<&'a str, Global>,
+    /// The names of `system`.
+    pub instances: Vec<&'a ast::Instance>,
     /// All definitions.
     pub definitions: Vec<Definition<'a>>,
     /// Those that are being worked on, outermost first.
@@ -290,6 +292,8 @@ pub(super) struct Context<'a> {
     pub pairs: Vec<PairNames<'a>>,
     /// By function.
     pub signatures: Vec<Signature>,
+    /// Lists, by the numbers in their types.
+    pub lists: Vec<super::types::List>,
     /// Values of parameters that are texts.
     pub texts: Vec<String>,
     /// `-p NAME=VALUE`, and whether a parameter has taken it.
@@ -316,12 +320,14 @@ impl<'a> Context<'a> {
             quantities: Quantities::default(),
             goals: Vec::new(),
             globals: FxHashMap::default(),
+            instances: Vec::new(),
             definitions: Vec::new(),
             running: Vec::new(),
             depth: 0,
             agents: Vec::new(),
             pairs: Vec::new(),
             signatures: Vec::new(),
+            lists: Vec::new(),
             texts: Vec::new(),
             overrides: settings.params.clone(),
             from_data: FxHashSet::default(),

@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::context::{
     AgentNames, Body, Context, Definition, Global, GlobalKind, Member, PairNames, Progress,
 };
-use super::error::{LimitError, NameError, TypeError};
+use super::error::{InteractionError, LimitError, NameError, TypeError};
 use super::ir::{AgentType, Event, Initials, Interaction, Link, Mode, ModeId, Type, TypeId, Variable};
 use super::types::{Quantity, Slot, Ty};
 use crate::base::{Arena, Span};
@@ -39,6 +39,7 @@ impl<'a> Context<'a> {
                     self.only_one("system", block.span, &mut system);
                     for instance in &block.instances {
                         self.declare_global(&instance.name, GlobalKind::Instance);
+                        self.instances.push(instance);
                     }
                 }
                 Item::Run(block) => self.only_one("run", block.span, &mut run),
@@ -105,6 +106,7 @@ impl<'a> Context<'a> {
             events: Vec::new(),
             lets: Vec::new(),
             declared: Vec::new(),
+            memberships: Vec::new(),
             initials: Initials::default(),
             modes: Arena::from_iter([root]),
             transitions: Vec::new(),
@@ -193,7 +195,7 @@ impl<'a> Context<'a> {
                 let number = links.len() - 1;
                 self.declare_member(ty, &formal.name, Member::Link(number));
             }
-            Ty::Real | Ty::Int | Ty::Bool | Ty::Wrong | Ty::Text | Ty::Link(_) | Ty::Nobody => {
+            Ty::Real | Ty::Int | Ty::Bool | Ty::Wrong | Ty::Text | Ty::Link(_) | Ty::Nobody | Ty::List(_) => {
                 let slot = self.no_text(slot, "a parameter of an agent", formal.ty.span);
                 let variable = variable(&formal.name, Some(&formal.ty), slot);
                 self.agents[ty.index()].params.push(slot);
@@ -322,9 +324,8 @@ impl<'a> Context<'a> {
             }
         }
         let [a, b] = item.formals.as_slice() else {
-            let count = item.formals.len();
-            let what = if count == 1 { "participant" } else { "participants" };
-            return self.refuse(format!("interactions with {count} {what}"), item.name.span);
+            let (count, span) = (item.formals.len(), item.name.span);
+            return self.report(InteractionError::Participants { count, span });
         };
         if a.name.text == b.name.text {
             let name = b.name.text.clone();
@@ -353,7 +354,7 @@ impl<'a> Context<'a> {
         match slot.ty {
             Ty::Agent(ty) => return Some(ty),
             Ty::Wrong => {}
-            Ty::Real | Ty::Int | Ty::Bool | Ty::Text | Ty::Link(_) | Ty::Nobody => {
+            Ty::Real | Ty::Int | Ty::Bool | Ty::Text | Ty::Link(_) | Ty::Nobody | Ty::List(_) => {
                 let found = self.describe(slot.ty);
                 self.report(TypeError::NotAllowed {
                     what: "a participant of an interaction",
@@ -371,7 +372,7 @@ fn variable(name: &ast::Name, ty: Option<&ast::TypeName>, slot: Slot) -> Variabl
     let ty_ir = match slot.ty {
         Ty::Int => Type::Int,
         Ty::Bool => Type::Bool,
-        Ty::Real | Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::Wrong => Type::Real,
+        Ty::Real | Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::List(_) | Ty::Wrong => Type::Real,
     };
     Variable {
         name: name.text.clone(),

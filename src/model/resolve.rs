@@ -4,10 +4,11 @@ use std::f64::consts::PI;
 
 use super::context::{Context, Global, GlobalKind, Home, Meaning, Member, PairNames, Scope, Value};
 use super::error::{ModeError, NameError, PropertyError, TypeError};
-use super::ir::{Destination, ExprKind, Inside, ModeId, TypeId};
+use super::ir::{Destination, ExprId, ExprKind, Inside, ModeId, TypeId};
 use super::suggest::closest;
 use super::types::Ty;
 use crate::base::Span;
+use crate::math::Op;
 use crate::syntax::ast;
 
 /// Constants and places of the language that are written as names.
@@ -205,7 +206,9 @@ impl<'a> Context<'a> {
             return self.wrong(span);
         };
         match self.agents[ty.index()].members.get(name.text.as_str()) {
-            Some(&(member, _)) => self.lower_member(agent, ty, member, &name.text, span),
+            Some(&(member, _)) => self.of_each(agent, span, &mut |context, agent| {
+                context.lower_member(agent, ty, member, &name.text, span)
+            }),
             None => {
                 self.no_member(ty, name);
                 self.wrong(span)
@@ -254,8 +257,8 @@ impl<'a> Context<'a> {
         if value.ty == Ty::Wrong {
             return value;
         }
-        if let ExprKind::State(agent, number) = self.model.exprs[value.id].kind {
-            return self.push(ExprKind::Rate(agent, number), Ty::Real, span);
+        if let Some(rate) = self.rate_of(value.id, span) {
+            return rate;
         }
         let found = self.describe(value.ty);
         self.report(TypeError::Operand {
@@ -267,12 +270,34 @@ impl<'a> Context<'a> {
         self.wrong(span)
     }
 
-    /// `cars[3]` in an expression.
-    pub fn lower_index(&mut self, scope: &mut Scope<'a>, base: &'a ast::Expr, span: Span) -> Value {
+    /// The rate of a state, or of one of several by the agent that is chosen; none if it is something else.
+    fn rate_of(&mut self, state: ExprId, span: Span) -> Option<Value> {
+        match self.model.exprs[state].kind {
+            ExprKind::State(agent, number) => Some(self.push(ExprKind::Rate(agent, number), Ty::Real, span)),
+            ExprKind::Apply(Op::Select, ref operands) => {
+                let (test, yes, no) = (operands[0], operands[1], operands[2]);
+                let (yes, no) = (self.rate_of(yes, span)?, self.rate_of(no, span)?);
+                Some(self.apply(Op::Select, [test, yes.id, no.id], Ty::Real, span))
+            }
+            _ => None,
+        }
+    }
+
+    /// `xs[3]` in an expression.
+    pub fn lower_index(
+        &mut self,
+        scope: &mut Scope<'a>,
+        base: &'a ast::Expr,
+        place: &'a ast::Expr,
+        span: Span,
+    ) -> Value {
         let value = self.lower(scope, base);
+        if let Ty::List(list) = value.ty {
+            return self.lower_element(scope, list, (base, place), span);
+        }
         if value.ty != Ty::Wrong {
             let found = self.describe(value.ty);
-            let needs = "an array of `system`, and only there";
+            let needs = "a list, or in `system` an array of agents";
             self.report(TypeError::Operand { operator: "[ ]".to_string(), needs, found, span: base.span });
         }
         self.wrong(span)
@@ -305,7 +330,9 @@ impl<'a> Context<'a> {
             _ => ModeId::new(0),
         };
         match self.resolve_mode(ty, from, target) {
-            Some(mode) => self.push(ExprKind::Is(value.id, mode), Ty::Bool, span),
+            Some(mode) => self.of_each(value, span, &mut |context, agent| {
+                context.push(ExprKind::Is(agent.id, mode), Ty::Bool, span)
+            }),
             None => self.wrong(span),
         }
     }

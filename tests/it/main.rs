@@ -49,6 +49,7 @@ mod aggregates;
 mod lives;
 mod imports;
 mod tables;
+mod lists;
 mod hierarchies;
 mod limits;
 mod first_steps;
