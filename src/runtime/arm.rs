@@ -136,14 +136,10 @@ impl<'p> Engine<'p, '_> {
         let folds = self.truths().gather(before.instance, kernel, &slots, Side::After);
         let g = truth::evaluate(&self.agents, &mut self.present, kernel, &slots, &folds);
         let (mut touched, mut enters) = (false, false);
-        let before_it = if folds.is_empty() && !self.leads_elsewhere(index, written) {
-            self.value_before(kernel, &slots, written)
-        } else {
-            None
-        };
-        let unchanged = rule == Rule::Woken && before_it == Some(g);
-        // Where an action has put g is known to its last bit.
-        let is_put = rule == Rule::Rates && before_it.is_some_and(|value| value != g);
+        let unchanged = rule == Rule::Woken
+            && folds.is_empty()
+            && !self.leads_elsewhere(index, written)
+            && self.value_before(kernel, &slots, written) == Some(g);
         let truth = if g.is_nan() || absent && !g.is_finite() {
             false
         } else if unchanged && before.rooted {
@@ -168,7 +164,6 @@ impl<'p> Engine<'p, '_> {
             match rule {
                 // What is left of a hazard is as likely to be next to nothing as anything else.
                 Rule::Rates if is_hazard => g < 0.0,
-                Rule::Rates if is_put && clear => g < 0.0,
                 Rule::Rates => decide(),
                 Rule::Woken if unchanged && clear => before.truth,
                 Rule::Fresh | Rule::Woken if clear => g < 0.0,

@@ -181,10 +181,12 @@ impl<'p> Cold<'p> {
         herd.tracks.range(place, state, span)
     }
 
-    /// Where the steps end that were kept of a cold agent, s.
-    pub fn step_ends(&self, agent: usize) -> impl Iterator<Item = f64> {
+    /// Where the steps begin and end that were kept of a cold agent, s.
+    pub fn joints(&self, agent: usize) -> impl Iterator<Item = f64> {
         let place = self.places.get(agent).filter(|place| place.cold);
-        place.into_iter().flat_map(|place| self.herds[place.herd as usize].tracks.ends(place.place as usize))
+        place
+            .into_iter()
+            .flat_map(|place| self.herds[place.herd as usize].tracks.joints(place.place as usize))
     }
 
     /// Makes the tracks that are wanted, of ways that are followed from `from` on at least.

@@ -48,9 +48,10 @@ impl Engine<'_, '_> {
         let now = self.present.time;
         self.queues.steps.clear();
         for &agent in recorded {
-            let ends = self.agents.cold.step_ends(agent).filter(|&end| now < end && end <= until);
+            // The last step before it ran ahead may end in the window, too; a row that has been written is not written again.
+            let joints = self.agents.cold.joints(agent).filter(|&time| now <= time && time <= until);
             let due = |time| Due { time, number: agent as u32, version: 0 };
-            self.queues.steps.extend(ends.map(due));
+            self.queues.steps.extend(joints.map(due));
         }
     }
 

@@ -132,9 +132,10 @@ impl Tracks {
         std::iter::successors(number(first), move |&step| number(self.steps[step].next))
     }
 
-    /// Where the steps of a track end, s.
-    pub fn ends(&self, place: usize) -> impl Iterator<Item = f64> {
-        self.steps_of(place).map(|step| self.steps[step].end)
+    /// Where a track begins, and where its steps end, s.
+    pub fn joints(&self, place: usize) -> impl Iterator<Item = f64> {
+        let begin = self.steps_of(place).next().map(|step| self.steps[step].start);
+        begin.into_iter().chain(self.steps_of(place).map(|step| self.steps[step].end))
     }
 
     /// The number of the step that covers `t`: of two, the first.

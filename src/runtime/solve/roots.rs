@@ -97,10 +97,11 @@ fn beyond_graze(f: &mut Turned<'_>, s: f64, e: f64, known: &Known) -> Option<f64
 /// Takes off the pieces over which |f| stays within rounding of zero: it is on the boundary all along. A change if that
 /// is one.
 fn along(f: &mut Turned<'_>, pieces: &mut Vec<(f64, f64, Entry)>, known: &Known) -> Option<Flip> {
-    let s = pieces.last()?.0;
+    let &(s, _, entry) = pieces.last()?;
     let longest = (0..pieces.len()).find(|&k| f.stays_within(s, pieces[k].1, 0.0))?;
     pieces.truncate(longest);
-    known.touching().then_some(Flip::touch(s))
+    // What was settled to be false on its boundary is held so.
+    (known.touching() && entry != Entry::Boundary).then_some(Flip::touch(s))
 }
 
 /// Rule 3, "On the boundary": by the first of two rates that is not zero within rounding.

@@ -133,16 +133,6 @@ fn rule_12_a_stop_ends_at_its_instant() {
 }
 
 #[test]
-fn rule_12_roots_that_come_nearer_than_the_resolution_of_time_are_no_silence() {
-    let (run, error) = simulate_error(
-        "agent A { state x = 0  discrete p = 1  flow { x' = 1 }  t: when x >= p { x := 0  p := p/2 } }
-         system { a = A() }  run { until 100 }",
-    );
-    assert_eq!(error.code, "HY0506");
-    near(run.time, 2.0, 1e-9);
-}
-
-#[test]
 fn rule_12_an_instant_in_which_births_never_end_is_an_error() {
     let (_, error) = simulate_error(
         "agent P(v: real) { state x = 0  discrete n: int = 0  flow { x' = v } }
