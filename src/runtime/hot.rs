@@ -49,7 +49,8 @@ impl Engine<'_, '_> {
         self.queues.steps.clear();
         for &agent in recorded {
             // The last step before it ran ahead may end in the window, too; a row that has been written is not written again.
-            let joints = self.agents.cold.joints(agent).filter(|&time| now <= time && time <= until);
+            let is_here = |&time: &f64| now <= time && time <= until && time < self.time_end;
+            let joints = self.agents.cold.joints(agent).filter(is_here);
             let due = |time| Due { time, number: agent as u32, version: 0 };
             self.queues.steps.extend(joints.map(due));
         }
@@ -58,7 +59,12 @@ impl Engine<'_, '_> {
     /// When the next step of a cold agent ends of which every step is recorded, s.
     pub fn next_step(&mut self) -> f64 {
         let Self { queues, agents, .. } = self;
-        while queues.steps.peek().is_some_and(|due| !agents.cold.is_cold(due.number as usize)) {
+        // One that has just been brought back may be on the step that begins there.
+        let is_there = |due: &Due| {
+            let agent = due.number as usize;
+            agents.cold.is_cold(agent) || agents.agents[agent].segment.start == due.time
+        };
+        while queues.steps.peek().is_some_and(|due| !is_there(due)) {
             queues.steps.pop();
         }
         queues.steps.peek().map_or(f64::INFINITY, |due| due.time)
