@@ -292,6 +292,7 @@ impl Engine<'_, '_> {
 
     fn write(&mut self, write: &Write, written: &mut Written) {
         self.remember(write.agent, written);
+        self.agents.changes += 1;
         match write.target {
             Target::State(k) => {
                 self.restart(write.agent, written);
@@ -306,6 +307,7 @@ impl Engine<'_, '_> {
 
     fn enter_mode(&mut self, change: &Move, written: &mut Written) {
         self.remember(change.agent, written);
+        self.agents.changes += 1;
         self.restart(change.agent, written);
         self.restart_readers(change.agent, Layout::MODE, written);
         let time = self.present.time;
