@@ -196,7 +196,8 @@ fn over_members(draft: &mut Draft, scope: &mut Scope, env: EnvId, id: ExprId) ->
         _ => unreachable!("called for these only"),
     };
     let owner = TypeId::new(scope.frame.slots[0].ty());
-    let links = model.types[owner].sets.iter().find(|found| found.ty == set);
+    let block = model.binders[binder].block;
+    let links = model.types[owner].sets.iter().find(|found| found.ty == set && found.block == block);
     let nothing = draft.graph.number(nothing);
     let mut folded = nothing;
     for link in links.map_or(0..0, |set| set.first..set.first + set.count) {

@@ -1,18 +1,28 @@
-//! From `--algorithm` and the options of the published algorithms to what the runtime takes.
+//! How a run is computed: the command line's options over the settings of `run { }`, as the runtime takes them.
 
 use super::Refused;
-use super::arguments::{AlgorithmName, EngineArguments, PaperArguments};
-use crate::model::ir::Integrator;
+use super::arguments::{EngineArguments, PaperArguments};
+use super::limits::Limits;
+use crate::model::Model;
+use crate::model::ir::{Integrator, Machinery};
+use crate::model::machinery::{AlgorithmName, BackendName, EngineName};
 use crate::runtime::paper::{Algorithm, Form, Paper};
+
+/// How a single run is computed.
+pub(super) struct Computed {
+    pub(super) algorithm: Algorithm,
+    pub(super) backend: BackendName,
+}
 
 /// The algorithm by its name, with the numbers that the user gives; `audit` has its misses counted.
 pub(super) fn algorithm(
     name: AlgorithmName,
     form: Form,
     given: &PaperArguments,
+    model: &Machinery,
     audit: bool,
 ) -> Result<Algorithm, Refused> {
-    let paper = paper(given, audit)?;
+    let paper = paper(given, model, audit)?;
     match name {
         AlgorithmName::Masim => Ok(Algorithm::Masim(form)),
         AlgorithmName::Masim2004 => Ok(Algorithm::Masim2004(paper)),
@@ -20,31 +30,62 @@ pub(super) fn algorithm(
     }
 }
 
-/// The same for a single run, where an option that its algorithm does not know is refused.
-pub(super) fn single(arguments: &EngineArguments, audit: bool) -> Result<Algorithm, Refused> {
+/// What a single run is computed by; an option that its algorithm does not know is refused. The model takes what the command line
+/// says of its run.
+pub(super) fn single(
+    arguments: &EngineArguments,
+    model: &mut Model,
+    audit: bool,
+) -> Result<Computed, Refused> {
+    let run = &mut model.run;
+    let name = arguments.algorithm.or(run.machinery.algorithm).unwrap_or_default();
     let PaperArguments { gamma, h_min, h_max, synchronisation, event_tolerance } = arguments.paper;
-    if arguments.algorithm == AlgorithmName::Masim {
+    if name == AlgorithmName::Masim {
         let options = [
             ("--gamma", gamma),
             ("--h-min", h_min),
             ("--h-max", h_max),
             ("--synchronisation", synchronisation),
-            ("--event-tolerance", event_tolerance),
         ];
         if let Some((name, _)) = options.iter().find(|(_, value)| value.is_some()) {
             return Err(format!("`{name}` belongs to `--algorithm masim-2004` and `sasim-2004`"));
         }
+        run.machinery.event_tolerance = event_tolerance.or(run.machinery.event_tolerance);
+    } else {
+        // Of an algorithm of its own the model knows which methods that has.
+        let own = if arguments.algorithm.is_none() { Some(run.integrator) } else { None };
+        run.integrator = published(arguments.integrator.or(own))?;
     }
-    algorithm(arguments.algorithm, arguments.engine.form(), &arguments.paper, audit)
+    let form = form(arguments.engine.or(run.machinery.engine).unwrap_or_default());
+    let algorithm = algorithm(name, form, &arguments.paper, &run.machinery, audit)?;
+    let backend = arguments.backend.or(run.machinery.backend).unwrap_or_default();
+    Ok(Computed { algorithm, backend })
 }
 
-fn paper(given: &PaperArguments, audit: bool) -> Result<Paper, Refused> {
+/// Lays the limits that a model sets under those of the command line.
+pub(super) fn limits_of(model: &Model, given: &[(String, u64)]) -> Result<Limits, Refused> {
+    let mut all = Vec::new();
+    let machinery = &model.run.machinery;
+    let own = [("max_microsteps", machinery.microsteps_max), ("zeno_events", machinery.zeno_events)];
+    all.extend(own.into_iter().filter_map(|(name, value)| Some((name.to_string(), u64::from(value?)))));
+    all.extend_from_slice(given);
+    Limits::new(&all)
+}
+
+fn form(name: EngineName) -> Form {
+    match name {
+        EngineName::Fast => Form::Fast,
+        EngineName::Plain => Form::Plain,
+    }
+}
+
+fn paper(given: &PaperArguments, model: &Machinery, audit: bool) -> Result<Paper, Refused> {
     let defaults = Paper::default();
     let paper = Paper {
-        gamma: given.gamma.unwrap_or(defaults.gamma),
-        h_min: given.h_min.unwrap_or(defaults.h_min),
-        h_max: given.h_max.unwrap_or(defaults.h_max),
-        synchronisation: given.synchronisation.unwrap_or(defaults.synchronisation),
+        gamma: given.gamma.or(model.gamma).unwrap_or(defaults.gamma),
+        h_min: given.h_min.or(model.h_min).unwrap_or(defaults.h_min),
+        h_max: given.h_max.or(model.h_max).unwrap_or(defaults.h_max),
+        synchronisation: given.synchronisation.or(model.synchronisation).unwrap_or(defaults.synchronisation),
         event_tolerance: given.event_tolerance.unwrap_or(defaults.event_tolerance),
         audit,
     };
@@ -54,19 +95,10 @@ fn paper(given: &PaperArguments, audit: bool) -> Result<Paper, Refused> {
     Ok(paper)
 }
 
-/// The method of integration that an algorithm runs with: the published ones have Adams' only.
-pub(super) fn integrator(
-    name: AlgorithmName,
-    given: Option<Integrator>,
-) -> Result<Option<Integrator>, Refused> {
-    match (name, given) {
-        (AlgorithmName::Masim, given) => Ok(given),
-        (
-            AlgorithmName::Masim2004 | AlgorithmName::Sasim2004,
-            None | Some(Integrator::Auto | Integrator::Adams),
-        ) => Ok(Some(Integrator::Adams)),
-        (AlgorithmName::Masim2004 | AlgorithmName::Sasim2004, Some(other)) => {
-            Err(format!("the algorithms of 2004 integrate by `adams`, not by `{}`", other.name()))
-        }
+/// The method of integration of the published algorithms: they have Adams' only.
+fn published(given: Option<Integrator>) -> Result<Integrator, Refused> {
+    match given {
+        None | Some(Integrator::Auto | Integrator::Adams) => Ok(Integrator::Adams),
+        Some(other) => Err(format!("the algorithms of 2004 integrate by `adams`, not by `{}`", other.name())),
     }
 }

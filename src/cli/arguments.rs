@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
+use clap::builder::PossibleValue;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::model::ir::Integrator;
-use crate::runtime::paper::Form;
+use crate::model::machinery::{AlgorithmName, BackendName, EngineName, Named};
 
 /// A language, a compiler and a simulator for multi-agent hybrid systems
 #[derive(Debug, Parser)]
@@ -87,24 +88,25 @@ pub(super) struct SettingArguments {
 }
 
 /// How it is simulated.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(super) struct EngineArguments {
-    /// How the agents' clocks advance
-    #[arg(long, value_enum, default_value_t)]
-    pub(super) algorithm: AlgorithmName,
+    /// How the agents' clocks advance [default: masim]
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub(super) algorithm: Option<AlgorithmName>,
     #[command(flatten)]
     pub(super) paper: PaperArguments,
-    /// The form of the engine; both find the same events
-    #[arg(long, value_enum, default_value_t)]
-    pub(super) engine: Engine,
+    /// The form of the engine; both find the same events [default: fast]
+    #[arg(long, value_enum, value_name = "FORM")]
+    pub(super) engine: Option<EngineName>,
     /// The method of integration: `auto` (taylor, and stiff for agents in modes that are), `taylor` (Taylor series, order
     /// by the tolerance), `tsit5` (Runge-Kutta, orders 5 and 4), `adams` (predictor-corrector, orders 3 and 4), `stiff`
     /// (Rodas5P, orders 5 and 4)
     #[arg(long, value_name = "METHOD", value_parser = integrator)]
     pub(super) integrator: Option<Integrator>,
     /// What evaluates the equations: the interpreter, and machine code as soon as that pays; or one of the two (the same bits)
-    #[arg(long, value_enum, default_value_t)]
-    pub(super) backend: BackendName,
+    /// [default: auto]
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub(super) backend: Option<BackendName>,
     /// How many threads may work; never changes a result (the plain engine uses one)
     #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) threads: Option<u32>,
@@ -113,7 +115,7 @@ pub(super) struct EngineArguments {
     pub(super) limits: Vec<(String, u64)>,
 }
 
-/// What the published algorithms take besides the tolerance.
+/// What the published algorithms take besides the tolerance; `run { }` has the same settings.
 #[derive(Clone, Copy, Debug, Default, Args)]
 #[command(next_help_heading = "Options of masim-2004 and sasim-2004")]
 pub(super) struct PaperArguments {
@@ -129,7 +131,8 @@ pub(super) struct PaperArguments {
     /// Clocks count as equal within this, in seconds [default: 1e-9]
     #[arg(long, value_name = "E", value_parser = finite_positive)]
     pub(super) synchronisation: Option<f64>,
-    /// A guard counts as zero within this, in its own unit [default: 1e-6]
+    /// A guard counts as zero within this, in its own unit [default: 1e-6]. With masim: roots within this time of each other
+    /// are one instant if their transitions share an agent, in seconds [default: 1e-12]
     #[arg(long, value_name = "E", value_parser = finite_positive)]
     pub(super) event_tolerance: Option<f64>,
 }
@@ -232,8 +235,9 @@ pub(super) struct CompareArguments {
     #[arg(long, value_name = "T", value_parser = finite_not_negative)]
     pub(super) until: Option<f64>,
     /// What evaluates the equations: the interpreter, and machine code as soon as that pays; or one of the two (the same bits)
-    #[arg(long, value_enum, default_value_t)]
-    pub(super) backend: BackendName,
+    /// [default: auto]
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub(super) backend: Option<BackendName>,
     /// Write a row for each run here
     #[arg(long, value_name = "FILE")]
     pub(super) csv: Option<PathBuf>,
@@ -326,51 +330,38 @@ pub(super) struct FmtArguments {
 /// All algorithms, as `--algorithms` has them.
 const ALL: &str = "masim,masim-2004,sasim-2004";
 
-/// How the agents' clocks advance.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(super) enum AlgorithmName {
-    /// Each agent has its own clock; exact about who reads whom
-    #[default]
-    Masim,
-    /// Algorithms 1 and 2 of Esposito & Kumar (2004), as published: may miss events
-    #[value(name = "masim-2004")]
-    Masim2004,
-    /// Algorithms 3 and 4: one clock for all, as published: may miss events
-    #[value(name = "sasim-2004")]
-    Sasim2004,
-}
+/// The names that a setting may have, with what the help says of each.
+macro_rules! choices {
+    ($name:ident { $($variant:ident: $help:literal,)* }) => {
+        impl ValueEnum for $name {
+            fn value_variants<'a>() -> &'a [Self] {
+                &[$($name::$variant),*]
+            }
 
-/// The form of the engine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(super) enum Engine {
-    /// Lists near pairs only, and lets those run ahead who cannot meet anybody
-    #[default]
-    Fast,
-    /// Looks at everything: slow and simple
-    Plain,
-}
-
-impl Engine {
-    /// What the runtime takes.
-    pub(super) fn form(self) -> Form {
-        match self {
-            Engine::Fast => Form::Fast,
-            Engine::Plain => Form::Plain,
+            fn to_possible_value(&self) -> Option<PossibleValue> {
+                let help = match self {
+                    $($name::$variant => $help,)*
+                };
+                Some(PossibleValue::new(self.name()).help(help))
+            }
         }
-    }
+    };
 }
 
-/// What evaluates the equations.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(super) enum BackendName {
-    /// The interpreter, and machine code as soon as it pays
-    #[default]
-    Auto,
-    /// Machine code
-    Jit,
-    /// The interpreter
-    Interp,
-}
+choices!(AlgorithmName {
+    Masim: "Each agent has its own clock; exact about who reads whom",
+    Masim2004: "Algorithms 1 and 2 of Esposito & Kumar (2004), as published: may miss events",
+    Sasim2004: "Algorithms 3 and 4: one clock for all, as published: may miss events",
+});
+choices!(EngineName {
+    Fast: "Lists near pairs only, and lets those run ahead who cannot meet anybody",
+    Plain: "Looks at everything: slow and simple",
+});
+choices!(BackendName {
+    Auto: "The interpreter, and machine code as soon as it pays",
+    Jit: "Machine code",
+    Interp: "The interpreter",
+});
 
 /// What a false `assert` means.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -433,8 +424,7 @@ pub(super) enum ColourWhen {
 }
 
 fn integrator(text: &str) -> Result<Integrator, String> {
-    let named = Integrator::NAMED.iter().find(|(name, _)| *name == text);
-    named.map(|(_, integrator)| *integrator).ok_or("write auto, taylor, tsit5, adams or stiff".into())
+    <Integrator as Named>::named(text).ok_or_else(|| format!("write {}", <Integrator as Named>::WORDS))
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {

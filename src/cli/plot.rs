@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use super::arguments::PlotArguments;
+use super::algorithm::{Computed, limits_of, single};
+use super::arguments::{EngineArguments, PlotArguments};
 use super::input::{load, name_of, reason};
 use super::limits::Limits;
 use super::run::{RecordAll, cast_of, compile, settings_of, simulate};
@@ -15,7 +16,6 @@ use crate::model;
 use crate::output::Tables;
 use crate::picture::{Form, Recording, Traces, View, plot as draw};
 use crate::runtime::observe::End;
-use crate::runtime::{Algorithm, paper};
 
 /// The longest table that is read, bytes.
 const TABLE_MAX: u64 = 1 << 30;
@@ -61,13 +61,15 @@ fn traces_of_table(path: &Path) -> Result<Traces, Refused> {
 
 /// Runs the model; no file that it names is written.
 fn traces_of_model(arguments: &PlotArguments) -> Result<Result<Traces, Exit>, Refused> {
-    let limits = Limits::new(&[])?;
-    let loaded = load(&arguments.input, &settings_of(&arguments.settings, None, RecordAll::No, &limits))?;
+    let loaded =
+        load(&arguments.input, &settings_of(&arguments.settings, None, RecordAll::No, &Limits::default()))?;
     tell(&loaded.sources, &loaded.diagnostics);
     let (exit, sources) = (loaded.exit(), loaded.sources);
-    let Some(model) = loaded.model else { return Ok(Err(exit)) };
+    let Some(mut model) = loaded.model else { return Ok(Err(exit)) };
+    let limits = limits_of(&model, &[])?;
+    let Computed { algorithm, backend } = single(&EngineArguments::default(), &mut model, false)?;
     let mut warnings: Vec<Diagnostic> = Vec::new();
-    let mut program = match compile(&model, Default::default(), &mut warnings) {
+    let mut program = match compile(&model, backend, &mut warnings) {
         Ok(program) => program,
         Err(diagnostics) => {
             tell(&sources, &diagnostics);
@@ -81,7 +83,6 @@ fn traces_of_model(arguments: &PlotArguments) -> Result<Result<Traces, Exit>, Re
     let mut recording = Recording::new(&cast, &diagrams, number);
     let mut tables = Tables::new(&cast);
     tables.also(&mut recording);
-    let algorithm = Algorithm::Masim(paper::Form::Fast);
     let outcome = simulate(algorithm, &program, &limits.run, &mut tables, false)?;
     drop(tables);
     if let End::Error(diagnostic) = &outcome.end {

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use super::algorithm::{integrator, single};
-use super::arguments::{AssertLevel, BackendName, RunArguments, SettingArguments};
+use super::algorithm::{Computed, limits_of, single};
+use super::arguments::{AssertLevel, RunArguments, SettingArguments};
 use super::input::{Loaded, load, name_of};
 use super::limits::Limits;
 use super::outputs::{OutputFiles, kind_of};
@@ -21,6 +21,7 @@ use crate::calculus;
 use crate::codegen::program::Program;
 use crate::codegen::{self, Backend};
 use crate::model::ir::Integrator;
+use crate::model::machinery::{BackendName, Named as _};
 use crate::model::{self, Model, Settings};
 use crate::output::{Cast, Report, Sink, Tables, TypeColumns, statistics, summary};
 use crate::picture::{Recording, Scene, page};
@@ -36,20 +37,23 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 /// Compiles, simulates, writes.
 pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     refuse_engine(&arguments.engine)?;
-    let algorithm = single(&arguments.engine, arguments.outputs.stats.is_some())?;
     let limits = Limits::new(&arguments.engine.limits)?;
     let levels = Levels::new(&arguments.allow, &[])?;
     let begun = Instant::now();
-    let integrator = integrator(arguments.engine.algorithm, arguments.engine.integrator)?;
     let record_all = if arguments.outputs.record.is_some() { RecordAll::Yes } else { RecordAll::No };
-    let settings = settings_of(&arguments.settings, integrator, record_all, &limits);
+    let settings = settings_of(&arguments.settings, arguments.engine.integrator, record_all, &limits);
     let loaded = load(&arguments.model, &settings)?;
     tell(&loaded.sources, &loaded.diagnostics);
     let exit = loaded.exit();
-    let Loaded { sources, mut warnings, model: Some(model), inputs, .. } = loaded else { return Ok(exit) };
+    let Loaded { sources, mut warnings, model: Some(mut model), inputs, .. } = loaded else {
+        return Ok(exit);
+    };
+    let limits = limits_of(&model, &arguments.engine.limits)?;
+    let Computed { algorithm, backend } =
+        single(&arguments.engine, &mut model, arguments.outputs.stats.is_some())?;
     refuse_endless(&model)?;
     let read_seconds = begun.elapsed().as_secs_f64();
-    let mut program = match compile(&model, arguments.engine.backend, &mut warnings) {
+    let mut program = match compile(&model, backend, &mut warnings) {
         Ok(program) => program,
         Err(diagnostics) => {
             tell(&sources, &diagnostics);
@@ -65,7 +69,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     let compile_parts = [
         ("reading", read_seconds),
         ("equations", compile_seconds - read_seconds - code_seconds),
-        (code_of(arguments.engine.backend), code_seconds),
+        (code_of(backend), code_seconds),
     ];
 
     let cast = cast_of(&program);
@@ -97,7 +101,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
         algorithm: algorithm.name(),
         engine: algorithm.form().name(),
         integrator: program.run.integrator.name(),
-        backend: backend_name(arguments.engine.backend),
+        backend: backend.name(),
         threads: 1,
         tolerance: program.run.tolerance,
         absolute: program.run.absolute.unwrap_or(program.run.tolerance),
@@ -248,14 +252,6 @@ fn code_of(backend: BackendName) -> &'static str {
     match backend {
         BackendName::Jit => "machine code",
         BackendName::Auto | BackendName::Interp => "tapes",
-    }
-}
-
-fn backend_name(backend: BackendName) -> &'static str {
-    match backend {
-        BackendName::Auto => "auto",
-        BackendName::Jit => "jit",
-        BackendName::Interp => "interp",
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::ir::{
     Action, AgentType, Create, Destination, Draw, ExprId, Given, Inside, Integrator, Link, LinkCase,
-    LinkTarget, ModeId, Model, Population, Run, Transition, Trigger, VarRef,
+    LinkTarget, Machinery, ModeId, Model, Population, Run, Transition, Trigger, VarRef,
 };
 
 impl Model {
@@ -103,6 +103,7 @@ impl Default for Run {
             absolute: None,
             seed: 0,
             integrator: Integrator::Auto,
+            machinery: Machinery::default(),
             records: Vec::new(),
             events: None,
             span: None,

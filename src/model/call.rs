@@ -3,7 +3,7 @@
 use super::context::{Context, Global, GlobalKind, Meaning, Scope, Value};
 use super::error::{ModeError, NameError, TypeError};
 use super::expression::join_numbers;
-use super::ir::{ExprKind, FunctionId};
+use super::ir::FunctionId;
 use super::suggest::closest;
 use super::types::Ty;
 use crate::base::Span;
@@ -199,6 +199,6 @@ impl<'a> Context<'a> {
         values.extend(signature.formals.iter().skip(args.len()).filter_map(|(_, default)| *default));
         let wrong = values.iter().any(|value| value.ty == Ty::Wrong);
         let ty = if wrong { Ty::Wrong } else { signature.result.ty };
-        self.push(ExprKind::Call(function, values.iter().map(|value| value.id).collect()), ty, span)
+        self.call_by_cases(function, values, ty, span)
     }
 }

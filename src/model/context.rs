@@ -278,6 +278,8 @@ pub(super) struct Context<'a> {
     pub goals: Vec<Goal>,
     /// The names of the file.
     pub globals: FxHashMap<&'a str, Global>,
+    /// The names of `system`.
+    pub instances: Vec<&'a ast::Instance>,
     /// All definitions.
     pub definitions: Vec<Definition<'a>>,
     /// Those that are being worked on, outermost first.
@@ -316,6 +318,7 @@ impl<'a> Context<'a> {
             quantities: Quantities::default(),
             goals: Vec::new(),
             globals: FxHashMap::default(),
+            instances: Vec::new(),
             definitions: Vec::new(),
             running: Vec::new(),
             depth: 0,

@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 
 use super::context::{Context, Member, Scope};
 use super::error::{ActionError, SystemError};
-use super::ir::{Action, Create, Given, TypeId};
+use super::ir::{Action, Create, ExprKind, Given, TypeId};
 use super::types::Ty;
 use crate::base::Span;
 use crate::syntax::ast::{self, GivenKind};
@@ -43,14 +43,17 @@ impl<'a> Context<'a> {
             self.member(scope, &mut create, arg);
         }
         self.miss(ty, &given, item.span);
-        Some(Action::Create(Box::new(create)))
+        self.create_by_cases(create)
     }
 
     /// `destroy agent`; none, and a diagnostic, if it is not an agent.
     pub fn destroy(&mut self, scope: &mut Scope<'a>, agent: &'a ast::Expr, span: Span) -> Option<Action> {
         let value = self.lower(scope, agent);
         match value.ty {
-            Ty::Agent(_) | Ty::Link(_) => Some(Action::Destroy { agent: value.id, span }),
+            Ty::Agent(_) | Ty::Link(_) => self.act_on_each(value, &mut |context, agent| {
+                let is_nobody = matches!(context.model.exprs[agent.id].kind, ExprKind::NoAgent);
+                (!is_nobody).then_some(Action::Destroy { agent: agent.id, span })
+            }),
             Ty::Wrong => None,
             Ty::Real | Ty::Int | Ty::Bool | Ty::Text | Ty::Nobody => {
                 let found = self.describe(value.ty);
@@ -111,9 +114,9 @@ impl<'a> Context<'a> {
         let links = links.map(|link| ("parameter", &link.name, link.span));
         let all = params.chain(states).chain(discretes).chain(links);
         let missing = all.filter(|(_, name, _)| {
-            let twice = self.agents[ty.index()].members.get(name.as_str());
-            let twice = matches!(twice, Some((Member::Twice, _)));
-            !twice && !given.contains_key(name.as_str()) && !self.declared_with_value(ty, name)
+            let member = self.agents[ty.index()].members.get(name.as_str());
+            let is_named = member.is_some_and(|(member, _)| *member != Member::Twice);
+            is_named && !given.contains_key(name.as_str()) && !self.declared_with_value(ty, name)
         });
         let missing = missing.map(|(kind, name, declared)| (kind, name.clone(), declared));
         for (kind, name, declared) in missing.collect::<Vec<_>>() {

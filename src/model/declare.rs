@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::context::{
     AgentNames, Body, Context, Definition, Global, GlobalKind, Member, PairNames, Progress,
 };
-use super::error::{LimitError, NameError, TypeError};
+use super::error::{InteractionError, LimitError, NameError, TypeError};
 use super::ir::{AgentType, Event, Initials, Interaction, Link, Mode, ModeId, Type, TypeId, Variable};
 use super::types::{Quantity, Slot, Ty};
 use crate::base::{Arena, Span};
@@ -39,6 +39,7 @@ impl<'a> Context<'a> {
                     self.only_one("system", block.span, &mut system);
                     for instance in &block.instances {
                         self.declare_global(&instance.name, GlobalKind::Instance);
+                        self.instances.push(instance);
                     }
                 }
                 Item::Run(block) => self.only_one("run", block.span, &mut run),
@@ -105,6 +106,7 @@ impl<'a> Context<'a> {
             events: Vec::new(),
             lets: Vec::new(),
             declared: Vec::new(),
+            memberships: Vec::new(),
             initials: Initials::default(),
             modes: Arena::from_iter([root]),
             transitions: Vec::new(),
@@ -322,9 +324,8 @@ impl<'a> Context<'a> {
             }
         }
         let [a, b] = item.formals.as_slice() else {
-            let count = item.formals.len();
-            let what = if count == 1 { "participant" } else { "participants" };
-            return self.refuse(format!("interactions with {count} {what}"), item.name.span);
+            let (count, span) = (item.formals.len(), item.name.span);
+            return self.report(InteractionError::Participants { count, span });
         };
         if a.name.text == b.name.text {
             let name = b.name.text.clone();

@@ -7,9 +7,10 @@ use std::fmt::Write;
 use super::formula::{Formulas, Names, number_text};
 use super::ir::{
     Action, AgentType, Claim, Create, ExprId, Given, Instance, Integrator, Interaction, LinkCase, LinkTarget,
-    Mode, ModeId, Model, ParamValue, Population, Record, Run, Transition, Trigger, Type, TypeId, VarRef,
-    Variable,
+    Machinery, Mode, ModeId, Model, ParamValue, Population, Record, Run, Transition, Trigger, Type, TypeId,
+    VarRef, Variable,
 };
+use super::machinery::Named;
 
 /// How many agents of a block are written.
 const AGENTS_SHOWN: usize = 3;
@@ -376,12 +377,37 @@ impl<'m> Writer<'m> {
             other => format!(" integrator {}", other.name()),
         };
         self.line(0, &(line + &integrator));
+        if run.machinery != Machinery::default() {
+            self.machinery(&run.machinery);
+        }
         for record in &run.records {
             self.record(record);
         }
         if let Some(events) = &run.events {
             self.line(1, &format!("events to \"{events}\""));
         }
+    }
+
+    fn machinery(&mut self, machinery: &Machinery) {
+        let names = [
+            ("algorithm", machinery.algorithm.map(Named::name)),
+            ("engine", machinery.engine.map(Named::name)),
+            ("backend", machinery.backend.map(Named::name)),
+        ];
+        let numbers = [
+            ("threads", machinery.threads.map(f64::from)),
+            ("event_tolerance", machinery.event_tolerance),
+            ("max_microsteps", machinery.microsteps_max.map(f64::from)),
+            ("zeno_events", machinery.zeno_events.map(f64::from)),
+            ("gamma", machinery.gamma),
+            ("h_min", machinery.h_min),
+            ("h_max", machinery.h_max),
+            ("synchronisation", machinery.synchronisation),
+        ];
+        let names = names.into_iter().filter_map(|(name, value)| Some(format!("{name} {}", value?)));
+        let numbers =
+            numbers.into_iter().filter_map(|(name, value)| Some(format!("{name} {}", number_text(value?))));
+        self.line(1, &names.chain(numbers).collect::<Vec<_>>().join(" "));
     }
 
     fn record(&mut self, record: &Record) {

@@ -109,7 +109,10 @@ impl<'a> Context<'a> {
         binders: &'a [ast::Name],
         from: Option<&'a ast::Expr>,
     ) -> Heard<'a> {
-        let sender = from.map(|from| (from.span, self.lower(scope, from)));
+        let sender = from.map(|from| {
+            let agent = self.lower(scope, from);
+            (from.span, self.as_link(scope, agent, from.span))
+        });
         let events = match sender {
             None => self.events_of_any(event),
             Some((span, value)) => match value.ty.agent_type() {

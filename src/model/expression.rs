@@ -152,6 +152,9 @@ impl<'a> Context<'a> {
     fn as_condition(&mut self, value: Value, span: Span) -> Value {
         match value.ty {
             Ty::Bool | Ty::Wrong => value,
+            Ty::Link(_) if self.choice(value).is_some() => {
+                self.of_each(value, span, &mut |context, agent| context.as_condition(agent, span))
+            }
             Ty::Link(_) => self.push(ExprKind::Present(value.id), Ty::Bool, span),
             Ty::Agent(_) => self.number(1.0, Ty::Bool, span),
             Ty::Nobody => self.number(0.0, Ty::Bool, span),
@@ -297,10 +300,10 @@ impl<'a> Context<'a> {
             (Ty::Wrong, _) | (_, Ty::Wrong) => Ty::Wrong,
             (Ty::Bool, Ty::Bool) => Ty::Bool,
             (a, b) if a.is_number() && b.is_number() => join_numbers(a, b),
-            (a, b) if a.is_reference() && b.is_reference() => {
-                self.refuse("agents chosen by `if`, except as arguments in `system`,", span);
+            (a, b) if a.is_reference() && b.is_reference() => Self::chosen_type(a, b).unwrap_or_else(|| {
+                self.choice_of_unlike(a, b, otherwise.span);
                 Ty::Wrong
-            }
+            }),
             (a, b) => {
                 let (expected, found) = (self.describe(a), self.describe(b));
                 let what = "what follows `else`".to_string();
@@ -369,9 +372,7 @@ impl<'a> Context<'a> {
             (Ty::Nobody, Ty::Nobody) => self.number(1.0, Ty::Bool, span),
             (Ty::Nobody, y) if y.is_reference() => self.absent(b, span),
             (x, Ty::Nobody) if x.is_reference() => self.absent(a, span),
-            (x, y) if x.agent_type().is_some() && x.agent_type() == y.agent_type() => {
-                self.push(ExprKind::Same(a.id, b.id), Ty::Bool, span)
-            }
+            (x, y) if x.agent_type().is_some() && x.agent_type() == y.agent_type() => self.same(a, b, span),
             (x, y) => {
                 let (expected, found) = (x.describe_needed(&self.model.types), self.describe(y));
                 let what = format!("the right side of `{}`", comparison_name(op));
@@ -387,6 +388,23 @@ impl<'a> Context<'a> {
             | CompareOp::LessEqual
             | CompareOp::Greater
             | CompareOp::GreaterEqual => same,
+        }
+    }
+
+    /// Whether two references name the same agent, by cases if one is chosen.
+    fn same(&mut self, a: Value, b: Value, span: Span) -> Value {
+        if self.choice(a).is_some() {
+            return self.of_each(a, span, &mut |context, a| context.same(a, b, span));
+        }
+        if self.choice(b).is_some() {
+            return self.of_each(b, span, &mut |context, b| context.same(a, b, span));
+        }
+        let is_nobody = |id| matches!(self.model.exprs[id].kind, ExprKind::NoAgent);
+        match (is_nobody(a.id), is_nobody(b.id)) {
+            (true, true) => self.number(1.0, Ty::Bool, span),
+            (true, false) => self.absent(b, span),
+            (false, true) => self.absent(a, span),
+            (false, false) => self.push(ExprKind::Same(a.id, b.id), Ty::Bool, span),
         }
     }
 

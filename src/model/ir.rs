@@ -11,6 +11,7 @@ pub use crate::model::collective::{Aggregate, Quantifier};
 pub use crate::model::integrator::Integrator;
 pub use crate::model::kinds::{Inside, ParamValue};
 use crate::model::limits::Limits;
+pub use crate::model::machinery::Machinery;
 
 mod action;
 
@@ -228,8 +229,10 @@ pub enum ExprKind {
 pub struct Binder {
     /// As written.
     pub name: String,
-    /// What it ranges over.
+    /// The type of what it ranges over.
     pub ty: TypeId,
+    /// The number of the name of `system` that it ranges over; none: all agents of the type. The filter says so, too.
+    pub block: Option<usize>,
     /// Where it is bound.
     pub span: Span,
 }
@@ -256,6 +259,8 @@ pub struct AgentType {
     pub span: Span,
     /// Numeric parameters (constant during a run).
     pub params: Vec<Variable>,
+    /// Names of `system` that anything asks for, by number, and the parameter that says whether an agent belongs to it.
+    pub memberships: Vec<(usize, usize)>,
     /// Continuous states.
     pub states: Vec<Variable>,
     /// Discrete variables.
@@ -345,6 +350,8 @@ pub struct Link {
 pub struct Set {
     /// The type.
     pub ty: TypeId,
+    /// The number of the name of `system` that they belong to; none: all of the type.
+    pub block: Option<usize>,
     /// The link to the first.
     pub first: usize,
     /// How many there are at t = 0.
@@ -540,6 +547,8 @@ pub struct Run {
     pub seed: u64,
     /// The method of integration.
     pub integrator: Integrator,
+    /// How it is computed.
+    pub machinery: Machinery,
     /// Trajectories to write.
     pub records: Vec<Record>,
     /// The file of the event log.

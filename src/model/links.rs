@@ -8,6 +8,7 @@ use rustc_hash::FxHashSet;
 use super::context::{Context, GlobalKind, Home, Scope, Value};
 use super::error::{NameError, TypeError};
 use super::ir::{ExprId, ExprKind, Link, LinkCase, LinkTarget, ModeId, TypeId};
+use super::membership::Named;
 use super::operands::for_each_operand;
 use super::order::find_circle;
 use super::types::Ty;
@@ -85,7 +86,10 @@ impl<'a> Context<'a> {
     /// The type of agent that an expression of a link leads to, as far as its text says.
     pub fn link_type(&self, value: &'a ast::Expr) -> Option<&'a ast::Name> {
         match &value.kind {
-            ast::ExprKind::Quantifier(item) if item.kind == QuantifierKind::Nearest => Some(&item.set),
+            ast::ExprKind::Quantifier(item) if item.kind == QuantifierKind::Nearest => {
+                let instance = self.instances.iter().find(|instance| instance.name.text == item.set.text);
+                Some(instance.map_or(&item.set, |instance| &instance.constructor.agent))
+            }
             ast::ExprKind::If { then, otherwise, .. } => {
                 self.link_type(then).or_else(|| self.link_type(otherwise))
             }
@@ -136,11 +140,10 @@ impl<'a> Context<'a> {
             _ => {
                 let value = self.lower(scope, expr);
                 let fitted = self.fit(value, Ty::Link(ty), span, "what a link leads to");
-                match (fitted.ty, value.ty) {
-                    (Ty::Wrong, _) => None,
-                    (_, Ty::Nobody) => Some(LinkTarget::Nobody),
-                    _ => Some(LinkTarget::Agent(fitted.id)),
+                if fitted.ty != Ty::Wrong {
+                    self.cases_of(fitted, test, span, cases);
                 }
+                return;
             }
         };
         cases.extend(target.map(|target| LinkCase { condition, target, span }));
@@ -161,7 +164,7 @@ impl<'a> Context<'a> {
             return None;
         }
         scope.bound.push((&item.binder.text, range.binder));
-        let filter = item.filter.as_ref().map(|filter| self.lower_condition(scope, filter).id);
+        let filter = self.filter(scope, &range, item).map(|filter| filter.id);
         let key = match &item.body {
             Some(key) => self.lower_number(scope, key, "by"),
             None => self.no_body("nearest", "a number behind `by`", span),
@@ -185,7 +188,7 @@ impl<'a> Context<'a> {
             self.report(NameError::NotHere { name: "nearest".to_string(), span, why, help });
             return self.wrong(span);
         }
-        let Some(set) = self.agent_named(&item.set) else { return self.wrong(span) };
+        let Some(Named { ty: set, .. }) = self.set_named(&item.set) else { return self.wrong(span) };
         let Some(target) = self.nearest(scope, item, set, span) else { return self.wrong(span) };
         let links = &mut self.model.types[ty].links;
         let number = links.len();

@@ -16,11 +16,17 @@ impl<'a> Context<'a> {
         let total = blocks.iter().map(|block| block.count).sum();
         let mut agents = Vec::with_capacity(total);
         self.evaluator.grant(limits::STEPS_PER_AGENT_MAX.saturating_mul(total as u64));
-        for (block, plan) in blocks.iter().zip(plans) {
+        for (number, (block, plan)) in blocks.iter().zip(plans).enumerate() {
+            let memberships = self.model.types[plan.ty].memberships.clone();
             let order = self.model.types[plan.ty].initials.order.clone();
             for index in 0..block.count {
                 match self.instance(plan, &order, &blocks, block, index) {
-                    Ok(agent) => agents.push(agent),
+                    Ok(mut agent) => {
+                        for &(block, param) in &memberships {
+                            agent.params[param] = f64::from(block == number);
+                        }
+                        agents.push(agent);
+                    }
                     Err(problem) => {
                         self.report(*problem);
                         break;

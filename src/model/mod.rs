@@ -6,6 +6,7 @@
 //! not be there. Many errors are reported in one run, none of them twice.
 
 mod integrator;
+pub mod machinery;
 pub mod limits;
 mod applied;
 mod kinds;
@@ -28,9 +29,11 @@ mod context;
 mod slot;
 mod modes;
 mod declare;
+mod choice;
 mod expression;
 mod resolve;
 mod call;
+mod membership;
 mod quantifier;
 mod overrides;
 mod draw;
@@ -129,6 +132,7 @@ pub fn check(ast: &Ast, sources: &mut SourceMap, files: &mut dyn Files, settings
     initial::initial_values(&mut context);
     watch::fill(&mut context, &items);
     run::settle(&mut context, &items, settings);
+    membership::settle(&mut context);
     population::populate(&mut context, &items);
     run::trajectories(&mut context, &items, settings);
     consistency::check_dimensions(&mut context);

@@ -1,6 +1,6 @@
 //! Quantifiers: conditions over sets of agents (`exists`, `forall`) and numbers of them (`count`, `sum`, `min`, `max`).
 
-use super::context::{Context, Global, GlobalKind, Home, Scope, Value};
+use super::context::{Context, Home, Scope, Value};
 use super::error::{NameError, TypeError};
 use super::ir::{Aggregate, Binder, BinderId, ExprId, ExprKind, Quantifier, TypeId};
 use super::types::Ty;
@@ -21,8 +21,10 @@ enum Asks {
 pub(super) struct Range {
     /// The name it binds.
     pub binder: BinderId,
-    /// The set.
+    /// The type of its members.
     pub set: TypeId,
+    /// That a member belongs to the name of `system` that stands for the set, if one does.
+    pub belongs: Option<Value>,
     /// Without the agent that asks.
     pub other: bool,
 }
@@ -46,7 +48,7 @@ impl<'a> Context<'a> {
         };
         let Some(range) = self.range(scope, item) else { return self.wrong(span) };
         scope.bound.push((&item.binder.text, range.binder));
-        let filter = item.filter.as_ref().map(|filter| self.lower_condition(scope, filter));
+        let filter = self.filter(scope, &range, item);
         let value = match asks {
             Asks::Truth(kind) => self.lower_truth(scope, kind, range, filter, item.body.as_ref(), span),
             Asks::Number(Aggregate::Count) => {
@@ -67,18 +69,32 @@ impl<'a> Context<'a> {
             let help = "leave `other` out, and compare by `!=` with an agent that is a parameter";
             self.report(NameError::NotHere { name: "other".to_string(), span: other, why, help });
         }
-        if matches!(self.globals.get(item.set.text.as_str()), Some(Global { kind: GlobalKind::Instance, .. }))
-        {
-            self.refuse("quantifiers over a name of `system`", item.set.span);
-            return None;
-        }
-        let set = self.agent_named(&item.set)?;
+        let named = self.set_named(&item.set)?;
         let binder = self.model.binders.push(Binder {
             name: item.binder.text.clone(),
-            ty: set,
+            ty: named.ty,
+            block: named.block,
             span: item.binder.span,
         });
-        Some(Range { binder, set, other: item.other.is_some() })
+        let belongs = self.belongs(named, binder, item.set.span);
+        Some(Range { binder, set: named.ty, belongs, other: item.other.is_some() })
+    }
+
+    /// `where`, for those who belong to the set.
+    pub fn filter(
+        &mut self,
+        scope: &mut Scope<'a>,
+        range: &Range,
+        item: &'a ast::Quantifier,
+    ) -> Option<Value> {
+        let filter = item.filter.as_ref().map(|filter| self.lower_condition(scope, filter));
+        match (range.belongs, filter) {
+            (Some(belongs), Some(filter)) => {
+                let span = self.model.exprs[filter.id].span;
+                Some(self.apply(Op::And, [belongs.id, filter.id], filter.ty, span))
+            }
+            (belongs, filter) => belongs.or(filter),
+        }
     }
 
     fn lower_truth(
@@ -95,7 +111,7 @@ impl<'a> Context<'a> {
             (None, Quantifier::Exists) => self.number(1.0, Ty::Bool, span),
             (None, Quantifier::Forall) => self.no_body("forall", "a condition behind `:`", span),
         };
-        let Range { binder, set, other } = range;
+        let Range { binder, set, other, .. } = range;
         let ty = joined(filter, Some(body), Ty::Bool);
         let filter = id(filter);
         self.push(ExprKind::Quantifier { kind, binder, set, other, filter, body: body.id }, ty, span)
@@ -116,7 +132,7 @@ impl<'a> Context<'a> {
             (Some(filter), Some(body)) => Some(self.apply(Op::And, [filter.id, body.id], Ty::Bool, span).id),
             (filter, body) => id(filter.or(body)),
         };
-        let Range { binder, set, other } = range;
+        let Range { binder, set, other, .. } = range;
         let kind = Aggregate::Count;
         self.push(ExprKind::Aggregate { kind, binder, set, other, filter, term: None }, ty, span)
     }
@@ -135,7 +151,7 @@ impl<'a> Context<'a> {
             None => self.no_body(kind.name(), "a number behind `:`", span),
         };
         let ty = joined(filter, Some(term), term.ty);
-        let Range { binder, set, other } = range;
+        let Range { binder, set, other, .. } = range;
         let (filter, term) = (id(filter), Some(term.id));
         self.push(ExprKind::Aggregate { kind, binder, set, other, filter, term }, ty, span)
     }

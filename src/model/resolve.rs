@@ -4,10 +4,11 @@ use std::f64::consts::PI;
 
 use super::context::{Context, Global, GlobalKind, Home, Meaning, Member, PairNames, Scope, Value};
 use super::error::{ModeError, NameError, PropertyError, TypeError};
-use super::ir::{Destination, ExprKind, Inside, ModeId, TypeId};
+use super::ir::{Destination, ExprId, ExprKind, Inside, ModeId, TypeId};
 use super::suggest::closest;
 use super::types::Ty;
 use crate::base::Span;
+use crate::math::Op;
 use crate::syntax::ast;
 
 /// Constants and places of the language that are written as names.
@@ -205,7 +206,9 @@ impl<'a> Context<'a> {
             return self.wrong(span);
         };
         match self.agents[ty.index()].members.get(name.text.as_str()) {
-            Some(&(member, _)) => self.lower_member(agent, ty, member, &name.text, span),
+            Some(&(member, _)) => self.of_each(agent, span, &mut |context, agent| {
+                context.lower_member(agent, ty, member, &name.text, span)
+            }),
             None => {
                 self.no_member(ty, name);
                 self.wrong(span)
@@ -254,8 +257,8 @@ impl<'a> Context<'a> {
         if value.ty == Ty::Wrong {
             return value;
         }
-        if let ExprKind::State(agent, number) = self.model.exprs[value.id].kind {
-            return self.push(ExprKind::Rate(agent, number), Ty::Real, span);
+        if let Some(rate) = self.rate_of(value.id, span) {
+            return rate;
         }
         let found = self.describe(value.ty);
         self.report(TypeError::Operand {
@@ -265,6 +268,19 @@ impl<'a> Context<'a> {
             span: state.span,
         });
         self.wrong(span)
+    }
+
+    /// The rate of a state, or of one of several by the agent that is chosen; none if it is something else.
+    fn rate_of(&mut self, state: ExprId, span: Span) -> Option<Value> {
+        match self.model.exprs[state].kind {
+            ExprKind::State(agent, number) => Some(self.push(ExprKind::Rate(agent, number), Ty::Real, span)),
+            ExprKind::Apply(Op::Select, ref operands) => {
+                let (test, yes, no) = (operands[0], operands[1], operands[2]);
+                let (yes, no) = (self.rate_of(yes, span)?, self.rate_of(no, span)?);
+                Some(self.apply(Op::Select, [test, yes.id, no.id], Ty::Real, span))
+            }
+            _ => None,
+        }
     }
 
     /// `cars[3]` in an expression.
@@ -305,7 +321,9 @@ impl<'a> Context<'a> {
             _ => ModeId::new(0),
         };
         match self.resolve_mode(ty, from, target) {
-            Some(mode) => self.push(ExprKind::Is(value.id, mode), Ty::Bool, span),
+            Some(mode) => self.of_each(value, span, &mut |context, agent| {
+                context.push(ExprKind::Is(agent.id, mode), Ty::Bool, span)
+            }),
             None => self.wrong(span),
         }
     }

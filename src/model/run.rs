@@ -7,13 +7,22 @@ use super::context::{Context, Home, Scope};
 use super::dimension::Dimension;
 use super::error::{FileError, RunError};
 use super::ir::{Integrator, Record};
+use super::machinery::Named;
 use super::suggest::closest;
 use super::types::{Slot, Ty};
 use crate::base::Span;
 use crate::syntax::ast::{self, ExprKind, Item, RunSettingKind};
 
-/// Settings of the language whose meaning comes later.
-const LATER: &[&str] = &[
+/// All settings.
+const KNOWN: [&str; 19] = [
+    "until",
+    "tolerance",
+    "absolute",
+    "seed",
+    "integrator",
+    "record",
+    "events",
+    "stop",
     "algorithm",
     "engine",
     "backend",
@@ -24,9 +33,11 @@ const LATER: &[&str] = &[
     "gamma",
     "h_min",
     "h_max",
-    "step_max",
-    "step_min",
+    "synchronisation",
 ];
+
+/// What one might look for, and no model contains.
+const STEP_SIZES: [&str; 6] = ["step", "step_max", "step_min", "max_step", "min_step", "dt"];
 
 /// A setting that is one number: its name, what it must be, the test.
 struct Number {
@@ -68,6 +79,34 @@ const SEED: Number = Number {
     allowed: |value| value.fract() == 0.0 && (0.0..=9_007_199_254_740_992.0).contains(&value),
 };
 
+const EVENT_TOLERANCE: Number = step("event_tolerance");
+const GAMMA: Number = Number {
+    name: "gamma",
+    needs: "a number from 0, below 1",
+    dimension: Some(Dimension::ONE),
+    allowed: |value| (0.0..1.0).contains(&value),
+};
+
+/// A setting that is a length of time.
+const fn step(name: &'static str) -> Number {
+    Number {
+        name,
+        needs: "a time above 0",
+        dimension: Some(Dimension::TIME),
+        allowed: |value| value > 0.0 && value.is_finite(),
+    }
+}
+
+/// A setting that counts.
+const fn count(name: &'static str) -> Number {
+    Number {
+        name,
+        needs: "a whole number from 1 to 2^31",
+        dimension: Some(Dimension::ONE),
+        allowed: |value| value.fract() == 0.0 && (1.0..=2_147_483_648.0).contains(&value),
+    }
+}
+
 /// Fills in the settings that are numbers or names.
 pub(super) fn settle<'a>(context: &mut Context<'a>, items: &[&'a Item], settings: &Settings) {
     if let Some(run) = only_run(items) {
@@ -76,6 +115,7 @@ pub(super) fn settle<'a>(context: &mut Context<'a>, items: &[&'a Item], settings
         for setting in &run.settings {
             context.setting(setting, &mut set);
         }
+        context.ordered_steps(&set);
     }
     context.lay_over(settings);
 }
@@ -120,7 +160,14 @@ impl<'a> Context<'a> {
             RunSettingKind::Set { name, value } => {
                 self.only_once(&name.text, item.span, set);
                 match name.text.as_str() {
-                    "integrator" => self.set_integrator(value),
+                    "integrator" => {
+                        if let Some(integrator) = self.named(name, value) {
+                            self.use_integrator(integrator, value.span);
+                        }
+                    }
+                    "algorithm" => self.model.run.machinery.algorithm = self.named(name, value),
+                    "engine" => self.model.run.machinery.engine = self.named(name, value),
+                    "backend" => self.model.run.machinery.backend = self.named(name, value),
                     _ => self.set_number(name, value),
                 }
             }
@@ -142,37 +189,68 @@ impl<'a> Context<'a> {
 
     fn set_number(&mut self, name: &'a ast::Name, value: &'a ast::Expr) {
         let setting = match name.text.as_str() {
-            "tolerance" => &TOLERANCE,
-            "absolute" => &ABSOLUTE,
-            "seed" => &SEED,
-            later if LATER.contains(&later) => return self.refuse(format!("`{later}` settings"), name.span),
+            "tolerance" => TOLERANCE,
+            "absolute" => ABSOLUTE,
+            "seed" => SEED,
+            "event_tolerance" => EVENT_TOLERANCE,
+            "threads" => count("threads"),
+            "max_microsteps" => count("max_microsteps"),
+            "zeno_events" => count("zeno_events"),
+            "gamma" => GAMMA,
+            "h_min" => step("h_min"),
+            "h_max" => step("h_max"),
+            "synchronisation" => step("synchronisation"),
+            size if STEP_SIZES.contains(&size) => {
+                return self.report(RunError::StepSize { name: size.to_string(), span: name.span });
+            }
             _ => return self.unknown_setting(name),
         };
-        let Some(value) = self.run_number(setting, value) else { return };
+        let Some(value) = self.run_number(&setting, value) else { return };
         let run = &mut self.model.run;
+        let machinery = &mut run.machinery;
         match name.text.as_str() {
             "tolerance" => run.tolerance = value,
             "absolute" => run.absolute = Some(value),
+            "event_tolerance" => machinery.event_tolerance = Some(value),
+            "threads" => machinery.threads = Some(value as u32),
+            "max_microsteps" => machinery.microsteps_max = Some(value as u32),
+            "zeno_events" => machinery.zeno_events = Some(value as u32),
+            "gamma" => machinery.gamma = Some(value),
+            "h_min" => machinery.h_min = Some(value),
+            "h_max" => machinery.h_max = Some(value),
+            "synchronisation" => machinery.synchronisation = Some(value),
             _ => run.seed = value as u64,
         }
     }
 
-    fn set_integrator(&mut self, value: &ast::Expr) {
-        let named = match &value.kind {
-            ExprKind::Name(name) => Integrator::NAMED.iter().find(|(known, _)| known == name),
-            _ => None,
-        };
-        match named {
-            Some((_, integrator)) => self.use_integrator(*integrator, value.span),
-            None => {
-                let found = match &value.kind {
-                    ExprKind::Name(name) => format!("`{name}`"),
-                    _ => "an expression".into(),
-                };
-                let (name, needs) = ("integrator".to_string(), "auto, taylor, tsit5, adams or stiff");
-                self.report(RunError::OutOfRange { name, needs, found, span: value.span });
-            }
+    /// The least step of the algorithms of 2004 is no longer than the longest.
+    fn ordered_steps(&mut self, set: &FxHashMap<String, Span>) {
+        let machinery = &self.model.run.machinery;
+        if let (Some(least), Some(most)) = (machinery.h_min, machinery.h_max)
+            && least > most
+        {
+            let (name, needs) = ("h_min".to_string(), "no more than `h_max`");
+            let span = set.get("h_min").copied().unwrap_or_default();
+            self.report(RunError::OutOfRange { name, needs, found: least.to_string(), span });
         }
+    }
+
+    /// A setting that is one of some names; a hyphen in it reads as a difference, and it may stand in quotes.
+    fn named<T: Named>(&mut self, setting: &ast::Name, value: &ast::Expr) -> Option<T> {
+        let text = match &value.kind {
+            ExprKind::Text(text) => text.clone(),
+            _ => self.sources.text(value.span).split_whitespace().collect(),
+        };
+        let named = T::named(&text);
+        if named.is_none() {
+            let found = match &value.kind {
+                ExprKind::Name(_) | ExprKind::Text(_) => format!("`{text}`"),
+                _ => "an expression".into(),
+            };
+            let (name, needs) = (setting.text.clone(), T::WORDS);
+            self.report(RunError::OutOfRange { name, needs, found, span: value.span });
+        }
+        named
     }
 
     fn use_integrator(&mut self, integrator: Integrator, span: Span) {
@@ -184,8 +262,7 @@ impl<'a> Context<'a> {
     }
 
     fn unknown_setting(&mut self, name: &ast::Name) {
-        let known = ["until", "tolerance", "absolute", "seed", "integrator", "record", "events"];
-        let similar = closest(&name.text, known.into_iter().chain(LATER.iter().copied()));
+        let similar = closest(&name.text, KNOWN);
         self.report(RunError::Unknown { name: name.text.clone(), span: name.span, similar });
     }
 

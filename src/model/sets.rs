@@ -8,6 +8,7 @@ use rustc_hash::FxHashSet;
 
 use super::context::Context;
 use super::ir::{ExprId, ExprKind, Link, Set, Trigger, TypeId};
+use super::membership::Named;
 use super::operands::for_each_operand;
 use crate::base::Span;
 
@@ -19,7 +20,8 @@ pub(super) fn fill(context: &mut Context) {
     let created: FxHashSet<TypeId> = context.model.creations().iter().map(|create| create.ty).collect();
     for ty in context.model.types.indices().collect::<Vec<_>>() {
         for (set, span) in sets_read(context, ty) {
-            if created.contains(&set) || created.contains(&ty) {
+            let grows = set.block.is_none() && created.contains(&set.ty);
+            if grows || created.contains(&ty) {
                 context.refuse("quantifiers in flows of or over agents that are created", span);
             } else {
                 link_all(context, ty, set, span);
@@ -28,8 +30,8 @@ pub(super) fn fill(context: &mut Context) {
     }
 }
 
-/// The types that flows and hazards of a type range over, each once, with where they first do.
-fn sets_read(context: &Context, ty: TypeId) -> Vec<(TypeId, Span)> {
+/// The sets that flows and hazards of a type range over, each once, with where they first do.
+fn sets_read(context: &Context, ty: TypeId) -> Vec<(Named, Span)> {
     let model = &context.model;
     let rates = model.types[ty].transitions.iter().filter_map(|transition| match transition.trigger {
         Trigger::Rate { rate, .. } => Some(rate),
@@ -38,17 +40,19 @@ fn sets_read(context: &Context, ty: TypeId) -> Vec<(TypeId, Span)> {
     let flows = model.types[ty].modes.iter().flat_map(|mode| &mode.flow).map(|&(_, rate, _)| rate);
     let mut pending: Vec<ExprId> = flows.chain(rates).collect();
     pending.reverse();
-    let (mut seen, mut found) = (FxHashSet::default(), Vec::new());
+    let (mut seen, mut found) = (FxHashSet::default(), Vec::<(Named, Span)>::new());
     while let Some(id) = pending.pop() {
         if !context.facts[id.index()].quantified || !seen.insert(id) {
             continue;
         }
         let expr = &model.exprs[id];
         match &expr.kind {
-            ExprKind::Quantifier { set, .. } | ExprKind::Aggregate { set, .. }
-                if !found.iter().any(|(known, _)| known == set) =>
-            {
-                found.push((*set, expr.span));
+            ExprKind::Quantifier { binder, .. } | ExprKind::Aggregate { binder, .. } => {
+                let binder = &model.binders[*binder];
+                let set = Named { ty: binder.ty, block: binder.block };
+                if !found.iter().any(|(known, _)| *known == set) {
+                    found.push((set, expr.span));
+                }
             }
             ExprKind::Let(agent, number) => pending.extend(context.let_value(*agent, *number)),
             ExprKind::Call(function, _) => pending.push(model.functions[*function].body),
@@ -60,15 +64,19 @@ fn sets_read(context: &Context, ty: TypeId) -> Vec<(TypeId, Span)> {
 }
 
 /// Gives every agent of a type a link to each of a set.
-fn link_all(context: &mut Context, ty: TypeId, set: TypeId, span: Span) {
+fn link_all(context: &mut Context, ty: TypeId, set: Named, span: Span) {
+    let Named { ty: of, block } = set;
     let model = &mut context.model;
     let agents = &model.population.agents;
-    let members: Vec<usize> = (0..agents.len()).filter(|&number| agents[number].ty == set).collect();
+    let within = match block.and_then(|number| model.population.blocks.get(number)) {
+        Some(block) => block.first..block.first + block.count,
+        None => 0..agents.len(),
+    };
+    let members: Vec<usize> = within.filter(|&number| agents[number].ty == of).collect();
     let names: Vec<String> = members.iter().map(|&number| model.population.agent_name(number)).collect();
-    let links =
-        names.into_iter().map(|name| Link { name, ty: set, required: false, cases: Vec::new(), span });
+    let links = names.into_iter().map(|name| Link { name, ty: of, required: false, cases: Vec::new(), span });
     let owner = &mut model.types[ty];
-    owner.sets.push(Set { ty: set, first: owner.links.len(), count: members.len() });
+    owner.sets.push(Set { ty: of, block, first: owner.links.len(), count: members.len() });
     owner.links.extend(links);
     for agent in model.population.agents.iter_mut().filter(|agent| agent.ty == ty) {
         agent.links.extend(members.iter().map(|&member| Some(member)));

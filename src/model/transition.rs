@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 use super::actions::Written;
 use super::context::{Context, Home, Scope, Value};
 use super::dimension::Dimension;
-use super::error::{ActionError, ModeError, NameError, TypeError};
+use super::error::{ActionError, InteractionError, ModeError, NameError, TypeError};
 use super::events::Heard;
 use super::ir::{BinderId, ExprId, ExprKind, ModeId, Transition, Trigger, TypeId};
 use super::types::{Slot, Ty};
@@ -107,14 +107,16 @@ impl<'a> Context<'a> {
                 let why = "an interaction has two participants, so `->` behind its guard names neither";
                 self.report(ActionError::ModeChange { span: target.span, why, help });
             }
-            let alone = match item.trigger.kind {
-                TriggerKind::When | TriggerKind::After(_) | TriggerKind::Every(_) => None,
-                TriggerKind::Rate(_) => Some("rate"),
-                TriggerKind::On { .. } => Some("on"),
-            };
-            if let Some(word) = alone {
-                self.refuse(format!("`{word}` transitions of interactions"), item.trigger.span);
-                continue;
+            match item.trigger.kind {
+                TriggerKind::When | TriggerKind::After(_) | TriggerKind::Every(_) => {}
+                TriggerKind::Rate(_) => {
+                    self.refuse("`rate` transitions of interactions", item.trigger.span);
+                    continue;
+                }
+                TriggerKind::On { .. } => {
+                    self.report(InteractionError::Hears { span: item.trigger.span });
+                    continue;
+                }
             }
             let Some(transition) = self.transition(Home::Pair(number), ModeId::new(0), item) else {
                 continue;

@@ -14,6 +14,11 @@ use crate::runtime::solve::time_resolution;
 use crate::runtime::truth::Side;
 
 impl Engine<'_, '_> {
+    /// The width of an instant at a time, s: roots of those who share an agent that lie within it of the first are in it (rule 4).
+    pub fn event_tolerance(&self, time: f64) -> f64 {
+        time_resolution(time).max(self.program.run.machinery.event_tolerance.unwrap_or(0.0))
+    }
+
     /// The time of the next change of an atom, of the next scheduled time, or of the next message.
     pub fn next_cause(&mut self) -> f64 {
         let flips = &mut self.queues.flips;
@@ -33,7 +38,7 @@ impl Engine<'_, '_> {
 
     /// Applies the changes that are due at `first`, and executes the instant if something fires.
     pub fn execute(&mut self, first: f64) -> Result<(), Failure> {
-        let window = first + time_resolution(first);
+        let window = first + self.event_tolerance(first);
         let cover = self.cover().min(self.time_end);
         self.certify_up_to(window.min(cover));
         if self.interrupted() || self.has_thawed {
@@ -244,7 +249,7 @@ impl Engine<'_, '_> {
         state.truth = state.leap.map_or(!state.truth, |leap| leap.after);
         state.rooted = true;
         // Across a jump the rate says nothing of how near zero g is.
-        let slack = if state.leap.is_some() { 0.0 } else { jet[1].abs() * time_resolution(time) };
+        let slack = if state.leap.is_some() { 0.0 } else { jet[1].abs() * self.event_tolerance(time) };
         self.recertify(index, root.max(time));
         let state = &mut self.guards.atoms[index];
         state.slack = if slack.is_finite() { slack } else { 0.0 };

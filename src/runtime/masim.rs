@@ -64,7 +64,7 @@ impl Engine<'_, '_> {
                 self.recorder.sample(&self.agents, &mut self.present, sample, self.observer)?;
             } else if cause < f64::INFINITY
                 && cause <= self.time_end
-                && (cause + time_resolution(cause)).min(self.time_end) <= cover
+                && (cause + self.event_tolerance(cause)).min(self.time_end) <= cover
             {
                 self.execute(cause)?;
             } else if cover >= until {

@@ -504,3 +504,76 @@ fn stop_when_is_told_and_its_agent_is_in_no_table() {
         assert!(!read(&folder, file).contains("run"), "{}", read(&folder, file));
     }
 }
+
+/// A press that goes on forever in no time, and a counter of it.
+const PRESS: &str = "\
+agent Press {
+  discrete n: int = 0
+  initial mode Up { when true -> Down { n := n + 1 } }
+  mode Down { when true -> Up }
+}
+system { press = Press() }
+";
+
+#[test]
+fn a_model_says_how_it_is_computed_and_the_command_line_overrides() {
+    let settings = "run { until 1  algorithm masim-2004  gamma 0.25  h_max 0.1 [s]  engine plain  backend interp  threads 2 }";
+    let ball = BALL.split("run {").next().unwrap().to_string() + settings;
+    let folder = folder(&[("ball.hy", &ball)]);
+    let stats = |words: &[&str]| {
+        expect(&hyc(&folder, &[&["run", "ball.hy", "--stats", "s.json"], words].concat()), 0, &[]);
+        json(&read(&folder, "s.json"))
+    };
+    let own = stats(&[]);
+    let named =
+        |stats: &Value| ["algorithm", "engine", "integrator", "backend"].map(|name| stats[name].clone());
+    assert_eq!(named(&own), ["masim-2004", "plain", "adams", "interp"]);
+    assert_eq!(
+        named(&stats(&["--algorithm", "masim", "--backend", "jit"])),
+        ["masim", "plain", "auto", "jit"]
+    );
+    assert_eq!(
+        named(&stats(&["--algorithm", "masim", "--engine", "fast"])),
+        ["masim", "fast", "auto", "interp"]
+    );
+    // the longest step of the algorithm: fewer steps with a longer one
+    let longer = stats(&["--h-max", "0.5"]);
+    assert!(longer["steps"].as_u64() < own["steps"].as_u64(), "{longer} {own}");
+    let done = hyc(&folder, &["run", "ball.hy", "--integrator", "tsit5"]);
+    expect(&done, 2, &["integrate by `adams`"]);
+}
+
+#[test]
+fn a_model_sets_limits_of_its_run_and_the_command_line_overrides() {
+    let five = format!("{PRESS}run {{ until 1  max_microsteps 5 }}");
+    let three = "\
+agent Ball {
+  state x = 1, v = 0
+  flow { x' = v  v' = -10 }
+  bounce: when x <= 0 { v := -0.5*v }
+}
+system { ball = Ball() }
+run { until 10  zeno_events 7 }
+";
+    let folder = folder(&[("press.hy", &five), ("ball.hy", three)]);
+    expect(&hyc(&folder, &["run", "press.hy"]), 3, &["fired 5 times"]);
+    expect(&hyc(&folder, &["run", "press.hy", "--limit", "max_microsteps=9"]), 3, &["fired 9 times"]);
+    expect(&hyc(&folder, &["run", "ball.hy"]), 3, &["7 events"]);
+    expect(&hyc(&folder, &["run", "ball.hy", "--limit", "zeno_events=12"]), 3, &["12 events"]);
+}
+
+#[test]
+fn a_step_size_is_no_setting_and_a_wrong_name_lists_all() {
+    let refused = |setting: &str| {
+        let folder = folder(&[("ball.hy", &BALL.replace("until 1", &format!("until 1  {setting}")))]);
+        hyc(&folder, &["check", "ball.hy"])
+    };
+    expect(&refused("step_max 0.1"), 1, &["HY0280", "no step size"]);
+    expect(&refused("engine quick"), 1, &["HY0281", "fast or plain", "`quick`"]);
+    expect(&refused("algorithm masim-2005"), 1, &["HY0281", "masim, masim-2004 or sasim-2004"]);
+    expect(&refused("threads 0"), 1, &["HY0281", "whole number from 1"]);
+    expect(&refused("event_tolerance 0"), 1, &["HY0281", "a time above 0"]);
+    expect(&refused("gamma 1"), 1, &["HY0281", "below 1"]);
+    expect(&refused("h_min 0.5 h_max 0.1"), 1, &["HY0281", "no more than `h_max`"]);
+    expect(&refused("event_tolerence 1e-9"), 1, &["HY0280", "did you mean `event_tolerance`?"]);
+}

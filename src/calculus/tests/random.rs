@@ -76,6 +76,7 @@ pub fn model() -> Model {
         events: Vec::new(),
         lets: Vec::new(),
         declared: Vec::new(),
+        memberships: Vec::new(),
         initials: Default::default(),
         modes: [root].into_iter().collect(),
         transitions: Vec::new(),

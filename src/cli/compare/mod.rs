@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::algorithm::algorithm;
+use super::algorithm::{algorithm, limits_of};
 use super::arguments::CompareArguments;
 use super::input::{Loaded, load};
 use super::refusal::{refuse_aggregates, refuse_endless};
@@ -19,7 +19,7 @@ use super::terminal::{say, tell};
 use super::{Exit, Refused};
 use crate::codegen::program::Program;
 use crate::model::Settings;
-use crate::runtime::limits::Limits;
+use crate::model::machinery::Named as _;
 use crate::runtime::paper::{Algorithm, Form};
 use measure::{agreement, measure};
 use sweep::{Cell, cells, swept};
@@ -33,25 +33,21 @@ pub const WITHIN: f64 = 1e-3;
 
 /// Runs, compares, prints.
 pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit, Refused> {
-    let limits = super::limits::Limits::new(&arguments.limits)?.run;
-    let algorithms: Vec<Algorithm> = (arguments.algorithms.iter())
-        .map(|&name| algorithm(name, Form::Plain, &arguments.paper, true))
-        .collect::<Result<_, _>>()?;
     let parameters: Vec<_> =
         arguments.params.iter().map(|(name, value)| swept(name, value)).collect::<Result<_, _>>()?;
     let cells = cells(&parameters, arguments.seeds);
-    let n_runs = cells.len() * (1 + arguments.tolerance.len().max(1) * algorithms.len());
+    let n_runs = cells.len() * (1 + arguments.tolerance.len().max(1) * arguments.algorithms.len());
     let bar = progress_bar(n_runs as u64);
     let mut entries = Vec::new();
     for cell in &cells {
         bar.set_message(message(cell));
-        let exit = run_cell(arguments, cell, &algorithms, &limits, &bar, &mut entries)?;
+        let exit = run_cell(arguments, cell, &bar, &mut entries)?;
         if exit != Exit::Fine {
             return Ok(exit);
         }
     }
     bar.finish_and_clear();
-    let names: Vec<&str> = algorithms.iter().map(|algorithm| algorithm.name()).collect();
+    let names: Vec<&str> = arguments.algorithms.iter().map(|algorithm| algorithm.name()).collect();
     if let Some(path) = &arguments.csv {
         write(path, &table::csv(&entries, &names))?;
     }
@@ -63,8 +59,6 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit, Refused> {
 fn run_cell(
     arguments: &CompareArguments,
     cell: &Cell,
-    algorithms: &[Algorithm],
-    limits: &Limits,
     bar: &ProgressBar,
     entries: &mut Vec<Entry>,
 ) -> Result<Exit, Refused> {
@@ -85,14 +79,20 @@ fn run_cell(
     tell(&sources, &diagnostics);
     let Some(model) = model else { return Ok(Exit::ModelErrors) };
     refuse_endless(&model)?;
-    let mut program = match compile(&model, arguments.backend, &mut Vec::new()) {
+    let limits = limits_of(&model, &arguments.limits)?.run;
+    let machinery = &model.run.machinery;
+    let algorithms: Vec<Algorithm> = (arguments.algorithms.iter())
+        .map(|&name| algorithm(name, Form::Plain, &arguments.paper, machinery, true))
+        .collect::<Result<_, _>>()?;
+    let backend = arguments.backend.or(machinery.backend).unwrap_or_default();
+    let mut program = match compile(&model, backend, &mut Vec::new()) {
         Ok(program) => program,
         Err(diagnostics) => {
             tell(&sources, &diagnostics);
             return Ok(Exit::ModelErrors);
         }
     };
-    for &algorithm in algorithms {
+    for &algorithm in &algorithms {
         refuse_aggregates(algorithm, &program)?;
     }
     program.run.records.clear();
@@ -103,7 +103,7 @@ fn run_cell(
     };
     let seed = program.run.seed;
     let runs = |program: &mut Program, algorithm: Algorithm, tolerance: f64| {
-        let measured = measure(program, algorithm, tolerance, limits, true);
+        let measured = measure(program, algorithm, tolerance, &limits, true);
         bar.inc(1);
         measured.map_err(|diagnostic| tell(&sources, std::slice::from_ref(&diagnostic)))
     };

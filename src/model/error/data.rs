@@ -356,6 +356,8 @@ pub(in crate::model) enum RunError {
     OutOfRange { name: String, needs: &'static str, found: String, span: Span },
     /// Set twice.
     Twice { name: String, span: Span, first: Span },
+    /// A step size, which no model contains.
+    StepSize { name: String, span: Span },
     /// Something that has nothing to record.
     NotRecordable { found: String, span: Span, similar: Option<String> },
 }
@@ -368,6 +370,11 @@ impl From<RunError> for Diagnostic {
                     .label(span, "not known"),
                 &similar,
             ),
+            RunError::StepSize { name, span } => {
+                Diagnostic::error("HY0280", format!("a model contains no step size, and so no `{name}`"))
+                    .label(span, "steps are the engine's")
+                    .help("steps follow from `tolerance`, and events are located whatever the steps; rows at fixed times are `record ... every d`")
+            }
             RunError::OutOfRange { name, needs, found, span } => {
                 Diagnostic::error("HY0281", format!("`{name}` must be {needs}"))
                     .label(span, format!("this is {found}"))

@@ -5,6 +5,7 @@ pub(super) mod types;
 pub(super) mod dimensions;
 pub(super) mod modes;
 pub(super) mod events;
+pub(super) mod interactions;
 pub(super) mod data;
 pub(super) mod imports;
 pub(super) mod properties;
@@ -13,6 +14,7 @@ pub(super) use data::{FileError, LimitError, OverrideError, RunError, SystemErro
 pub(super) use dimensions::{DimensionError, Evidence, Side};
 pub(super) use events::EventError;
 pub(super) use imports::ImportError;
+pub(super) use interactions::InteractionError;
 pub(super) use modes::{ActionError, ModeError};
 pub(super) use names::NameError;
 pub(super) use properties::PropertyError;

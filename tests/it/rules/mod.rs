@@ -3,6 +3,7 @@
 //! What a test expects follows from the reference by hand; flows are polynomials where only events matter.
 
 mod rule_01_links;
+mod rule_01_choice;
 mod rule_01_state;
 mod rule_02_arming;
 mod rule_03_instant;
@@ -15,6 +16,7 @@ mod rule_07_reset;
 mod rule_08_claims;
 mod rule_09_events;
 mod rule_10_lives;
+mod rule_10_named_sets;
 mod rule_11_time;
 mod rule_11_rate;
 mod rule_12_end;

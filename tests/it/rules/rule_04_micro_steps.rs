@@ -1,6 +1,6 @@
 //! Rule 4: what happens in one instant, and in which order.
 
-use crate::harness::{Case, all_near, near, refused, simulate, simulate_error, words};
+use crate::harness::{Case, all_near, near, refused, simulate, simulate_error, simulate_to_the_end, words};
 use hyc::runtime::limits::Limits;
 
 #[test]
@@ -306,4 +306,42 @@ fn rule_04_exit_actions_before_those_of_an_interaction() {
     );
     assert_eq!([run.value("a.n"), run.value("b.n")], [10.0, 10.0]);
     assert_eq!([run.value("a.m"), run.value("b.m")], [8.0, 8.0]);
+}
+
+/// Two roots half a millisecond apart; the later one has priority.
+const TWO_ROOTS: &str = "\
+agent A {
+  state x = 0
+  discrete n: int = 0, m: int = 0
+  flow { x' = 1 }
+  one: when x >= 1 { n := n + 1 }
+  two: when x >= 1.0005 priority 1 { m := n + 1 }
+}
+system { a = A() }
+";
+
+#[test]
+fn rule_04_roots_within_the_tolerance_of_events_are_one_instant() {
+    let run = simulate_to_the_end(&format!("{TWO_ROOTS}run {{ until 2  event_tolerance 1 [ms] }}"));
+    let fired: Vec<(f64, usize, &str)> =
+        run.events.iter().map(|event| (event.time, event.micro, event.transition.as_str())).collect();
+    assert_eq!(fired, [(1.0, 0, "A.two"), (1.0, 1, "A.one")], "the later root counts as there, once");
+    assert_eq!(run.finals[0].values[1..], [("n".into(), 1.0), ("m".into(), 1.0)]);
+}
+
+#[test]
+fn rule_04_without_a_tolerance_of_events_they_are_two() {
+    let run = simulate_to_the_end(&format!("{TWO_ROOTS}run {{ until 2 }}"));
+    all_near(&run.event_times(), &[1.0, 1.0005], 1e-12);
+    assert_eq!(run.finals[0].values[1..], [("n".into(), 1.0), ("m".into(), 2.0)]);
+}
+
+#[test]
+fn rule_04_agents_that_share_nothing_keep_their_instants_whatever_the_tolerance() {
+    let run = simulate_to_the_end(
+        "agent A(k: real) { state x = 0  flow { x' = k }  one: when x >= 1 { } }
+         system { a = A(k = 1)  b = A(k = 1.0005) }
+         run { until 2  event_tolerance 0.1 }",
+    );
+    all_near(&run.event_times(), &[1.0 / 1.0005, 1.0], 1e-12);
 }

@@ -128,3 +128,21 @@ fn rule_05_both_right_hand_sides_of_an_interaction_read_the_state_before() {
     assert_eq!([run.value("p.x"), run.value("q.x")], [2.0, 1.0]);
     assert_eq!(run.log(), ["0 Swap.pair p q"]);
 }
+
+#[test]
+fn rule_05_an_interaction_is_between_two_and_hears_nothing() {
+    let of = |pars: &str| {
+        let text = format!(
+            "agent A {{ event e  state x = 0  flow {{ x' = 1 }} }}
+             interaction Touch({pars}) {{ touch: when time >= 1 {{ a.x := 0 }} }}"
+        );
+        refused(&text)
+    };
+    assert!(of("a: A").contains("HY0206"), "{}", of("a: A"));
+    assert!(of("a: A, b: A, c: A").contains("two participants, not 3"), "{}", of("a: A, b: A, c: A"));
+    let told = refused(
+        "agent A { event e  state x = 0  flow { x' = 1 }  every 1 { emit e } }
+         interaction Touch(a: A, b: A) { on e { a.x := 0 } }",
+    );
+    assert!(told.contains("HY0218") && told.contains("`on` belongs to an agent"), "{told}");
+}
