@@ -149,13 +149,17 @@ impl Stepper {
     /// Takes a step of a group from its clock.
     pub fn step(&mut self, agents: &mut Agents<'_>, group: &mut Group, curves: &mut CurveRows) -> Advance {
         let step_max = self.integrator.step_max;
-        let known = led_until(agents, group) - group.clock;
+        let led_until = led_until(agents, group);
+        let known = led_until - group.clock;
         let wanted = group.integration.h;
         self.integrator.step_max = step_max.min(known);
         let accepted = self.accepted_step(agents, group);
         self.integrator.step_max = step_max;
         match accepted {
-            Ok(stretch) => {
+            Ok(mut stretch) => {
+                if stretch.h >= known {
+                    stretch.end = led_until;
+                }
                 if let (Some(wanted), Some(next)) = (wanted, &mut group.integration.h)
                     && stretch.h >= known
                 {
@@ -314,17 +318,23 @@ impl Stepper {
         curves: &mut CurveRows,
     ) -> bool {
         let clock = group.clock;
-        let hits: Vec<(f64, KinkHit)> =
+        let at_hand: Vec<(f64, KinkHit)> =
             group.members.iter().flat_map(|&agent| kinks_at_hand(agents, agent, clock, curves)).collect();
-        let Some(end) = hits.iter().map(|&(time, _)| time).max_by(f64::total_cmp) else { return false };
-        let mut rates = Vec::new();
-        self.with_flow(agents, group, |_, x, _, flow| {
-            rates.resize(x.len(), 0.0);
-            flow.rates(clock, x, &mut rates);
-        });
-        if rates.iter().any(|rate| !rate.is_finite()) {
-            return false;
+        let Some(end) = at_hand.iter().map(|&(time, _)| time).max_by(f64::total_cmp) else { return false };
+        let mut hits: Vec<KinkHit> = at_hand.into_iter().map(|(_, hit)| hit).collect();
+        let mut rates = self.finite_rates(agents, group);
+        if rates.is_none() {
+            // The locks may have turned already, a little before their kinks.
+            turn(agents, &hits);
+            rates = self.finite_rates(agents, group);
+            for hit in &mut hits {
+                std::mem::swap(&mut hit.before, &mut hit.lock);
+            }
         }
+        let Some(rates) = rates else {
+            turn(agents, &hits);
+            return false;
+        };
         let (h, mut first) = (end - clock, 0);
         for &member in &group.members {
             let Agent { states, segment, .. } = &mut agents.agents[member];
@@ -338,8 +348,18 @@ impl Stepper {
         }
         group.clock = end;
         group.integration.restart();
-        group.kinks = hits.into_iter().map(|(_, hit)| hit).collect();
+        group.kinks = hits;
         true
+    }
+
+    /// The rates of a group at its clock, if all are finite.
+    fn finite_rates(&mut self, agents: &Agents<'_>, group: &mut Group) -> Option<Vec<f64>> {
+        let mut rates = Vec::new();
+        self.with_flow(agents, group, |_, x, group, flow| {
+            rates.resize(x.len(), 0.0);
+            flow.rates(group.clock, x, &mut rates);
+        });
+        rates.iter().all(|rate| rate.is_finite()).then_some(rates)
     }
 
     /// When the group's new segments first meet a kink, and all that they meet then.

@@ -1,6 +1,7 @@
 //! Arming, settling and waking (rules 2, 3 and 14): which guards look at the present instant afresh, and what they find.
 
 use rustc_hash::FxHashSet;
+use smallvec::SmallVec;
 
 use crate::codegen::kernel::{AgentView, Kernel};
 use crate::codegen::program::{Atom, Relation, Slot, Trigger};
@@ -12,7 +13,7 @@ use crate::runtime::guards::{AtomState, Origin, closed, inside};
 use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::{Depth, depth_read};
 use crate::runtime::sleep::Regard;
-use crate::runtime::solve::roots::{Direction, direction};
+use crate::runtime::solve::roots::{AT_TURN, Direction, direction};
 use crate::runtime::solve::{scheduled, time_resolution};
 use crate::runtime::truth::{self, Side, Truths};
 
@@ -26,6 +27,9 @@ pub enum Rule {
     /// Something it reads was written.
     Woken,
 }
+
+/// Powers of ten of the times after which g is looked at from there, s.
+const LATER: [i32; 3] = [-7, -5, -3];
 
 impl<'p> Engine<'p, '_> {
     /// Reads the truths of atoms at the present instant.
@@ -132,10 +136,14 @@ impl<'p> Engine<'p, '_> {
         let folds = self.truths().gather(before.instance, kernel, &slots, Side::After);
         let g = truth::evaluate(&self.agents, &mut self.present, kernel, &slots, &folds);
         let (mut touched, mut enters) = (false, false);
-        let unchanged = rule == Rule::Woken
-            && folds.is_empty()
-            && !self.leads_elsewhere(index, written)
-            && self.value_before(kernel, &slots, written) == Some(g);
+        let before_it = if folds.is_empty() && !self.leads_elsewhere(index, written) {
+            self.value_before(kernel, &slots, written)
+        } else {
+            None
+        };
+        let unchanged = rule == Rule::Woken && before_it == Some(g);
+        // Where an action has put g is known to its last bit.
+        let is_put = rule == Rule::Rates && before_it.is_some_and(|value| value != g);
         let truth = if g.is_nan() || absent && !g.is_finite() {
             false
         } else if unchanged && before.rooted {
@@ -160,6 +168,7 @@ impl<'p> Engine<'p, '_> {
             match rule {
                 // What is left of a hazard is as likely to be next to nothing as anything else.
                 Rule::Rates if is_hazard => g < 0.0,
+                Rule::Rates if is_put && clear => g < 0.0,
                 Rule::Rates => decide(),
                 Rule::Woken if unchanged && clear => before.truth,
                 Rule::Fresh | Rule::Woken if clear => g < 0.0,
@@ -285,11 +294,48 @@ impl<'p> Engine<'p, '_> {
         }
         state.slack = band;
         let bounds = if atom.smooth { self.jet_rounding(kernel, slots, folds, None) } else { [0.0; 3] };
-        match direction(&jet, &bounds) {
+        let direction = match self.direction_at_turn(atom, slots, folds) {
+            Some(direction) => direction,
+            None => direction(&jet, &bounds),
+        };
+        match direction {
             Direction::Up => false,
             Direction::Down => true,
             Direction::Along => along,
         }
+    }
+
+    /// The way that g goes from here, if its rates are not the same on both sides (`abs(x)` at 0): by what it is a little later on the
+    /// way that states, rates and second rates foretell. None if its rates do not turn here, or it reads more than states.
+    fn direction_at_turn(&mut self, atom: &Atom, slots: &Slots, folds: &[Folded<'_>]) -> Option<Direction> {
+        let kernel = self.program.kernel(atom.value);
+        let turns = self.program.kernel(atom.turns?);
+        if !folds.is_empty() || depth_read(kernel) != Depth::States || depth_read(turns) != Depth::States {
+            return None;
+        }
+        self.present.make(&self.agents, slots, Depth::Accelerations);
+        let views = self.present.views(&self.agents, slots);
+        let mut out: SmallVec<[f64; 4]> = SmallVec::from_elem(f64::NAN, turns.n_outputs());
+        turns.eval(&views, self.present.time, &mut out);
+        if !out.iter().any(|turn| turn.abs() <= AT_TURN) {
+            return None;
+        }
+        let time = self.present.time;
+        for exponent in LATER {
+            let later = f64::powi(10.0, exponent) * (1.0 + time.abs());
+            let moved: Vec<Vec<f64>> =
+                slots.iter().map(|&agent| self.present.foretold(agent, later)).collect();
+            let mut views = self.present.views(&self.agents, slots);
+            for (view, states) in views.iter_mut().zip(&moved) {
+                view.states = states;
+            }
+            let mut g = [0.0];
+            kernel.eval(&views, time + later, &mut g);
+            if g[0].abs() > 1e-3 * later.powi(2) {
+                return Some(if g[0] > 0.0 { Direction::Up } else { Direction::Down });
+            }
+        }
+        Some(Direction::Along)
     }
 
     /// The value of a kernel on the rows before the micro-step; none if a rate would be needed.
@@ -358,7 +404,8 @@ impl<'p> Engine<'p, '_> {
                 let mut read = atom.slots.iter().map(|&slot| slots[slot]);
                 let AtomState { slack, rooted, touched, .. } = self.guards.atoms[index];
                 let is_plain = slack == 0.0 && !rooted && !touched;
-                if regard == Regard::Far {
+                let is_just_armed = fresh && self.guards.atoms[index].certified == self.present.time;
+                if regard == Regard::Far || is_just_armed {
                     continue;
                 } else if regard == Regard::AsBefore && is_plain {
                     self.recertify(index, self.present.time);

@@ -10,7 +10,7 @@ use crate::math::Interval;
 use crate::runtime::fold::{self, Folded};
 use crate::runtime::population::{ABSENT, Agents, Slots};
 use crate::runtime::present::{Boxes, Depth, Views};
-use crate::runtime::solve::roots::Curve;
+use crate::runtime::solve::roots::{AT_TURN, Curve};
 use crate::runtime::solve::segment::Segment;
 
 /// Scratch rows for evaluating along segments; three rows (x, x', x'') for each slot.
@@ -196,6 +196,15 @@ impl Curve for AtomCurve<'_, '_> {
 
     fn smooth(&self) -> bool {
         self.atom.smooth
+    }
+
+    fn turns(&mut self, t: f64) -> bool {
+        let Some(turns) = self.atom.turns.filter(|_| self.folds.is_empty()) else { return false };
+        self.fill_boxes(t, t);
+        let mut out: SmallVec<[Interval; 4]> =
+            smallvec![Interval::WHOLE; self.agents.program.kernel(turns).n_outputs()];
+        self.evaluate(turns, Interval { lo: t, hi: t }, &mut out);
+        out.iter().any(|turn| turn.mig() <= AT_TURN)
     }
 
     fn given_up(&self) -> bool {

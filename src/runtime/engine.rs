@@ -98,6 +98,7 @@ impl Queues {
     /// Atom instances have new numbers: by old number, `moved`.
     pub fn renumber_atoms(&mut self, moved: &[u32]) {
         self.later.iter_mut().for_each(|due| due.number = moved[due.number as usize]);
+        self.later.retain(|due| due.number != u32::MAX);
         for queue in [&mut self.uncertified, &mut self.flips] {
             let mut all = std::mem::take(queue).into_vec();
             all.iter_mut().for_each(|due| due.number = moved[due.number as usize]);

@@ -328,7 +328,7 @@ impl Engine<'_, '_> {
             state.touched = false;
             state.rooted = false;
             if was_rooted || self.reads_written(index, written) {
-                self.settle(index, Rule::Rates, &Written::default());
+                self.settle(index, Rule::Rates, written);
             }
         }
         if !self.guards.definition(instance).folds.is_empty() {

@@ -200,7 +200,6 @@ impl Engine<'_, '_> {
         if cause <= cover + time_resolution(cover) && cause <= self.time_end {
             return self.execute(cause);
         }
-        eprintln!("blocked at {} {obstacle:?}", self.groups.groups[group].clock);
         let crept =
             self.stepper.creep_to_kinks(&mut self.agents, &mut self.groups.groups[group], &mut self.curves);
         if crept {

@@ -184,6 +184,16 @@ impl Present {
         &self.rows[agent].accelerations
     }
 
+    /// The states of an agent a little later, by its rates and second rates, made before; none of one that is absent.
+    pub fn foretold(&self, agent: usize, later: f64) -> Vec<f64> {
+        if agent == ABSENT {
+            return Vec::new();
+        }
+        let Rows { states, rates, accelerations, .. } = &self.rows[agent];
+        let moved = states.iter().zip(rates).zip(accelerations);
+        moved.map(|((x, rate), second)| x + later * (rate + 0.5 * later * second)).collect()
+    }
+
     /// The rates of an agent, made before.
     pub fn rates(&self, agent: usize) -> &[f64] {
         &self.rows[agent].rates

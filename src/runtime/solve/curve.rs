@@ -10,6 +10,10 @@ pub trait Curve {
     fn smooth(&self) -> bool;
     /// Bounds of g, g', g'' over [s, e].
     fn jet_range(&mut self, s: f64, e: f64) -> [Interval; 3];
+    /// Whether the rate of g is not the same on both sides of t.
+    fn turns(&mut self, _t: f64) -> bool {
+        false
+    }
     /// Whether nobody waits for the search any more: it then ends where it is.
     fn given_up(&self) -> bool {
         false
@@ -78,6 +82,9 @@ impl Known {
         self.closed && !self.truth
     }
 }
+
+/// A surface on which the rate of g turns is here if what is zero there is no larger.
+pub const AT_TURN: f64 = 1e-13;
 
 /// How the search enters a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]

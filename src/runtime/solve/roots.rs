@@ -11,7 +11,7 @@
 
 use crate::math::Interval;
 use crate::runtime::solve::bracket::bracket;
-pub use crate::runtime::solve::curve::{Curve, Flip, Known, Search};
+pub use crate::runtime::solve::curve::{AT_TURN, Curve, Flip, Known, Search};
 use crate::runtime::solve::curve::{Entry, LEAVES, Turned};
 use crate::runtime::solve::{time_resolution, ulp};
 
@@ -42,7 +42,7 @@ pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_ma
     let mut looked_at = 0;
     while let Some((s, e, mut entry)) = pieces.pop() {
         if entry == Entry::Unsettled {
-            entry = match enter(&mut f, s, known_here) {
+            entry = match enter(&mut f, (s, e), known_here) {
                 Ok(entry) => entry,
                 Err(flip) => return Search::Flip(flip),
             };
@@ -114,7 +114,7 @@ pub fn direction(jet: &[f64; 3], rounding: &[f64; 3]) -> Direction {
 }
 
 /// Settles the start of a search: clear, on the boundary going up, or changing at once.
-fn enter(f: &mut Turned<'_>, s: f64, known: Known) -> Result<Entry, Flip> {
+fn enter(f: &mut Turned<'_>, (s, e): (f64, f64), known: Known) -> Result<Entry, Flip> {
     let jet = f.jet(s);
     let by_rate = known.slack.max(jet[1].abs() * time_resolution(s)).min(1e-3 * (1.0 + jet[0].abs()));
     let band = by_rate.min(f.rounding_max);
@@ -137,7 +137,7 @@ fn enter(f: &mut Turned<'_>, s: f64, known: Known) -> Result<Entry, Flip> {
     if jet[0] < -band.max(rounding[0]) {
         return Err(flip);
     }
-    let direction = direction(&jet, &rounding);
+    let direction = if f.curve.turns(s) { way_from(f, (s, e)) } else { direction(&jet, &rounding) };
     let passes = known.grazed || !known.touching();
     if direction != Direction::Up && passes && turns_back(f, s, &jet, band.max(rounding[0])) {
         return Ok(Entry::Boundary);
@@ -148,6 +148,19 @@ fn enter(f: &mut Turned<'_>, s: f64, known: Known) -> Result<Entry, Flip> {
         Direction::Along if known.truth == known.closed => Ok(Entry::Boundary),
         Direction::Along => Err(flip),
     }
+}
+
+/// Which way f goes from s, where its rate is not the same on both sides: by what it is a little later.
+fn way_from(f: &mut Turned<'_>, (s, e): (f64, f64)) -> Direction {
+    let here = f.value(s);
+    for share in [1e-6, 1e-4, 1e-2] {
+        let t = s + share * (e - s);
+        let change = f.value(t) - here;
+        if change.abs() > f.rounding(t)[0] {
+            return if change > 0.0 { Direction::Up } else { Direction::Down };
+        }
+    }
+    Direction::Along
 }
 
 /// Whether an f within `band` of zero at t is positive again where its rate would have it below: there is a kink in
