@@ -459,7 +459,8 @@ pub fn claims(engine: &Engine<'_, '_>, instance: u32, slots: &Slots) -> Vec<(usi
             regions(slots[slot], 0);
         }
     });
-    let own = transition.actions.writes.iter();
+    // Whom a link does not lead to is not written.
+    let own = transition.actions.writes.iter().filter(|&&(slot, _)| slots[slot] != ABSENT);
     claims.extend(own.map(|&(slot, target)| (slots[slot], Claimed::Column(target))));
     for change in moves {
         let modes = &system(change.agent).modes;
