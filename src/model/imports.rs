@@ -82,7 +82,9 @@ impl Reader<'_> {
             return;
         }
         self.known.push(identity.clone());
-        let name = path.display().to_string();
+        // Of `.` nothing is left once it is resolved.
+        let resolved = path.display().to_string();
+        let name = if resolved.is_empty() { import.path.value.clone() } else { resolved };
         let bytes = match self.files.read(&name) {
             Ok(bytes) => bytes,
             Err(error) => {

@@ -34,7 +34,7 @@ fn modes_links_births_and_deaths_count() {
          agent W { discrete n: int = 0
            on_: when (count a in A where a is On) == 2 { n := n + 1 }
            led: when (count a in A where a.l) == 2 { n := n + 10 }
-           lost: when (count a in A where a.l) == 0 and time > 2 { n := n + 100 }
+           lost: when (count a in A where a.l) == 0 and time > 2.1 { n := n + 100 }
            gone: when (sum a in A: 1) == 2 and time > 2.5 { n := n + 1000 } }
          system { a = A[2]()  w = W() }
          run { until 3.5 }",

@@ -234,6 +234,7 @@ impl From<FileError> for Diagnostic {
                     .label(used, "the data is used here");
                 match similar {
                     Some(similar) => unknown.help(format!("did you mean `{similar}`?")),
+                    None if name.contains([';', '\t']) => unknown.help("separate columns by commas"),
                     None => unknown.help(format!("a column that begins with `_` is passed over: `_{name}`")),
                 }
             }
@@ -280,6 +281,8 @@ pub(in crate::model) enum LimitError {
     TableRows { most: usize, span: Span },
     /// More cells of one sample than the limit.
     Cells { most: usize, span: Span },
+    /// More samples of a record than the limit.
+    Samples { most: u64, span: Span },
     /// Constants that take too long.
     Steps { span: Span },
     /// Definitions that are looked up inside each other, many deep.
@@ -324,6 +327,11 @@ impl From<LimitError> for Diagnostic {
                 Diagnostic::error("HY0299", format!("a sample of more than {most} cells"))
                     .label(span, "agents times variables")
                     .help(raise("max_cells"))
+            }
+            LimitError::Samples { most, span } => {
+                Diagnostic::error("HY0535", format!("a record of more than {most} samples"))
+                    .label(span, "so many of this length up to the end of the run")
+                    .help(format!("write a longer time behind `every`; {}", raise("max_samples")))
             }
             LimitError::Steps { span } => {
                 Diagnostic::error("HY0292", "the constants of this model take too long to work out")

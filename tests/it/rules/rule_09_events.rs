@@ -383,6 +383,6 @@ fn rule_09_a_message_passed_over_keeps_its_turn_though_nothing_hears_it_there() 
          system { a = A()  s = S() }
          run { until 3 }",
     );
-    assert_eq!(run.log(), ["0 S.t s", "0 A.go a", "1 A.back a", "2 A.h0 a s", "3 A.h0 a s"]);
+    assert_eq!(run.log(), ["0 S.t s", "0 A.go a M0->M1", "1 A.back a M1->M0", "2 A.h0 a s", "3 A.h0 a s"]);
     assert_eq!(run.value("a.c"), 23.0);
 }

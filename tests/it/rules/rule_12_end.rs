@@ -131,3 +131,12 @@ fn rule_12_a_stop_ends_at_its_instant() {
     near(run.value("b[0].y"), 1.9, 1e-11);
     near(run.value("b[2].y"), 1.7, 1e-10);
 }
+
+#[test]
+fn rule_12_an_end_beyond_what_can_be_followed_says_so() {
+    let (_, found) =
+        simulate_error("agent A { state x = 0  flow { x' = 1 } }  system { a = A() }  run { until 1e300 }");
+    assert_eq!(found.code, "HY0511");
+    let told = words(&[found]);
+    assert!(told.contains("longer than it can be followed") && told.contains("smaller `until`"), "{told}");
+}
