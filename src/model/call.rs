@@ -77,7 +77,7 @@ impl<'a> Context<'a> {
                 self.report(ModeError::EdgeOutsideGuard { name: name.clone(), span });
                 return self.wrong(span);
             }
-            "table" => return self.lower_table(scope, args, span),
+            "table" | "spline" => return self.lower_table(scope, name, args, span),
             "csv" | "Uniform" | "Normal" | "Exponential" => {
                 let (why, help) = if name == "csv" {
                     ("is not a value", "it stands behind `from` in `system`")

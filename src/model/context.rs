@@ -292,6 +292,8 @@ pub(super) struct Context<'a> {
     pub pairs: Vec<PairNames<'a>>,
     /// By function.
     pub signatures: Vec<Signature>,
+    /// Lists, by the numbers in their types.
+    pub lists: Vec<super::types::List>,
     /// Values of parameters that are texts.
     pub texts: Vec<String>,
     /// `-p NAME=VALUE`, and whether a parameter has taken it.
@@ -325,6 +327,7 @@ impl<'a> Context<'a> {
             agents: Vec::new(),
             pairs: Vec::new(),
             signatures: Vec::new(),
+            lists: Vec::new(),
             texts: Vec::new(),
             overrides: settings.params.clone(),
             from_data: FxHashSet::default(),

@@ -55,7 +55,7 @@ impl<'a> Context<'a> {
                 (!is_nobody).then_some(Action::Destroy { agent: agent.id, span })
             }),
             Ty::Wrong => None,
-            Ty::Real | Ty::Int | Ty::Bool | Ty::Text | Ty::Nobody => {
+            Ty::Real | Ty::Int | Ty::Bool | Ty::Text | Ty::Nobody | Ty::List(_) => {
                 let found = self.describe(value.ty);
                 self.report(ActionError::DestroysNoAgent { span: agent.span, found });
                 None

@@ -195,7 +195,7 @@ impl<'a> Context<'a> {
                 let number = links.len() - 1;
                 self.declare_member(ty, &formal.name, Member::Link(number));
             }
-            Ty::Real | Ty::Int | Ty::Bool | Ty::Wrong | Ty::Text | Ty::Link(_) | Ty::Nobody => {
+            Ty::Real | Ty::Int | Ty::Bool | Ty::Wrong | Ty::Text | Ty::Link(_) | Ty::Nobody | Ty::List(_) => {
                 let slot = self.no_text(slot, "a parameter of an agent", formal.ty.span);
                 let variable = variable(&formal.name, Some(&formal.ty), slot);
                 self.agents[ty.index()].params.push(slot);
@@ -354,7 +354,7 @@ impl<'a> Context<'a> {
         match slot.ty {
             Ty::Agent(ty) => return Some(ty),
             Ty::Wrong => {}
-            Ty::Real | Ty::Int | Ty::Bool | Ty::Text | Ty::Link(_) | Ty::Nobody => {
+            Ty::Real | Ty::Int | Ty::Bool | Ty::Text | Ty::Link(_) | Ty::Nobody | Ty::List(_) => {
                 let found = self.describe(slot.ty);
                 self.report(TypeError::NotAllowed {
                     what: "a participant of an interaction",
@@ -372,7 +372,7 @@ fn variable(name: &ast::Name, ty: Option<&ast::TypeName>, slot: Slot) -> Variabl
     let ty_ir = match slot.ty {
         Ty::Int => Type::Int,
         Ty::Bool => Type::Bool,
-        Ty::Real | Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::Wrong => Type::Real,
+        Ty::Real | Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::List(_) | Ty::Wrong => Type::Real,
     };
     Variable {
         name: name.text.clone(),

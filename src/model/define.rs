@@ -95,6 +95,9 @@ impl<'a> Context<'a> {
 
     fn define_param(&mut self, number: usize, item: &'a ast::Param) -> Meaning {
         let declared = item.ty.as_ref().map(|ty| self.slot(ty));
+        if let ast::ExprKind::List(items) = &item.value.kind {
+            return self.define_list(&item.name, declared, items, item.value.span);
+        }
         let what = format!("the value of `{}`", item.name.text);
         let mut scope = Scope::of(Home::File);
         let value = match declared {
@@ -125,10 +128,32 @@ impl<'a> Context<'a> {
                 (Some(_), Some(Given::Number(number))) => Meaning::Number(number, slot.ty),
                 (Some(number), Some(Given::Text(_)) | None) => Meaning::Number(number, slot.ty),
             },
-            Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::Wrong => {
+            Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::List(_) | Ty::Wrong => {
                 self.no_reference(slot.ty, "a `param`", item.value.span);
                 Meaning::Failed
             }
+        }
+    }
+
+    /// A parameter that is a list of constants.
+    fn define_list(
+        &mut self,
+        name: &'a ast::Name,
+        declared: Option<Slot>,
+        items: &'a [ast::Expr],
+        span: Span,
+    ) -> Meaning {
+        let list = self.lower_list(&mut Scope::of(Home::File), items, declared, span);
+        let Ty::List(number) = list.ty else { return Meaning::Failed };
+        for (element, item) in self.lists[number].elements.clone().into_iter().zip(items) {
+            if self.constant(element, item, "an element of a parameter").is_none() {
+                return Meaning::Failed;
+            }
+        }
+        match self.list_override(name, declared.unwrap_or(Slot::plain(Ty::Real))) {
+            Some(given) if given.ty == Ty::Wrong => Meaning::Failed,
+            Some(given) => Meaning::Shared(given),
+            None => Meaning::Shared(list),
         }
     }
 
@@ -176,14 +201,22 @@ impl<'a> Context<'a> {
             let slot = self.slot(ty);
             self.no_text(slot, "a `let`", ty.span)
         });
-        let value = match slot {
-            Some(slot) => {
+        let value = match (slot, &item.value.kind) {
+            (_, ast::ExprKind::List(items)) => self.lower_list(scope, items, slot, item.value.span),
+            (Some(slot), _) => {
                 self.lower_into(scope, &item.value, slot, &format!("the value of `{}`", item.name.text))
             }
-            None => self.lower(scope, &item.value),
+            (None, _) => self.lower(scope, &item.value),
         };
         match value.ty {
             Ty::Real | Ty::Int | Ty::Bool | Ty::Wrong => (value, slot),
+            Ty::List(_) if !matches!(scope.home, Home::Agent(..)) => (value, slot),
+            Ty::List(_) => {
+                let (what, found) = ("a `let` of an agent", "a list".to_string());
+                let help = "declare the list outside of agents, or take one of its elements here";
+                self.report(TypeError::NotAllowed { what, found, span: item.value.span, help });
+                (Value { ty: Ty::Wrong, ..value }, slot)
+            }
             Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody => {
                 self.no_reference(value.ty, "a `let`", item.value.span);
                 (Value { ty: Ty::Wrong, ..value }, slot)
@@ -196,7 +229,7 @@ impl<'a> Context<'a> {
         if value.ty == Ty::Wrong {
             return Meaning::Failed;
         }
-        if !self.facts[value.id.index()].closed {
+        if !self.facts[value.id.index()].closed || matches!(value.ty, Ty::List(_)) {
             return self.shared(value, slot);
         }
         self.definitions[number].quantity = slot.map_or(Quantity::As(value.id), |slot| slot.quantity());
@@ -276,7 +309,7 @@ impl<'a> Context<'a> {
             }
             None => self.lower(&mut scope, &item.body),
         };
-        if matches!(body.ty, Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody) {
+        if matches!(body.ty, Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::List(_)) {
             self.no_reference(body.ty, "the value of a function", item.body.span);
             return Meaning::Failed;
         }

@@ -33,13 +33,10 @@ impl<'a> Context<'a> {
             }
             ast::ExprKind::Text(_) => self.number(0.0, Ty::Text, span),
             ast::ExprKind::Name(name) => self.lower_name(scope, name, span),
-            ast::ExprKind::List(_) => {
-                self.refuse("lists", span);
-                self.wrong(span)
-            }
+            ast::ExprKind::List(items) => self.lower_list(scope, items, None, span),
             ast::ExprKind::Field(base, name) => self.lower_field(scope, base, name, span),
             ast::ExprKind::Call { callee, args } => self.lower_call(scope, callee, args, span),
-            ast::ExprKind::Index(base, _) => self.lower_index(scope, base, span),
+            ast::ExprKind::Index(base, place) => self.lower_index(scope, base, place, span),
             ast::ExprKind::Prime(state) => self.lower_prime(scope, state, span),
             ast::ExprKind::Unary(UnaryOp::Neg, operand) => self.lower_negation(scope, operand, span),
             ast::ExprKind::Unary(UnaryOp::Not, operand) => {
@@ -158,7 +155,7 @@ impl<'a> Context<'a> {
             Ty::Link(_) => self.push(ExprKind::Present(value.id), Ty::Bool, span),
             Ty::Agent(_) => self.number(1.0, Ty::Bool, span),
             Ty::Nobody => self.number(0.0, Ty::Bool, span),
-            Ty::Real | Ty::Int | Ty::Text => {
+            Ty::Real | Ty::Int | Ty::Text | Ty::List(_) => {
                 let found = self.describe(value.ty);
                 self.report(TypeError::NotACondition { found, span });
                 Value { ty: Ty::Wrong, ..value }

@@ -1,6 +1,7 @@
-//! `table(file, column, e)`: a column of a data file against the file's first, linear between rows, constant outside.
+//! `table(file, column, e)`: a column of a data file against the file's first, linear between rows, constant outside; `spline`, a
+//! cubic that keeps the shape between rows.
 //!
-//! It becomes a choice among the pieces, a tree of `if e < knot`: so each knot is a kink where a flow reads it, and exact rows
+//! Either becomes a choice among the pieces, a tree of `if e < knot`: so each knot is a kink where a flow reads it, and exact rows
 //! give their exact values. Which units the columns have is not known: the numbers are not checked.
 
 use super::context::{Context, Home, Scope, Value};
@@ -13,21 +14,39 @@ use crate::base::{FileId, Span};
 use crate::math::Op;
 use crate::syntax::ast;
 
+/// How a table goes from row to row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shape {
+    /// By lines.
+    Linear,
+    /// By cubics that rise and fall only where the rows do.
+    Cubic,
+}
+
 /// What a table becomes: its knots, and the values there.
 struct Pieces {
     at: Vec<f64>,
     values: Vec<f64>,
+    /// The slopes at the knots, of cubics; else none.
+    slopes: Vec<f64>,
     argument: ExprId,
     span: Span,
 }
 
 impl<'a> Context<'a> {
-    /// The value of a call of `table`.
-    pub fn lower_table(&mut self, scope: &mut Scope<'a>, args: &'a [ast::Expr], span: Span) -> Value {
-        if !self.check_count("table", 3, 3, args.len(), span) {
+    /// The value of a call of `table` or `spline`.
+    pub fn lower_table(
+        &mut self,
+        scope: &mut Scope<'a>,
+        name: &str,
+        args: &'a [ast::Expr],
+        span: Span,
+    ) -> Value {
+        let shape = if name == "spline" { Shape::Cubic } else { Shape::Linear };
+        if !self.check_count(name, 3, 3, args.len(), span) {
             return self.wrong(span);
         }
-        let argument = self.lower_number(scope, &args[2], "table");
+        let argument = self.lower_number(scope, &args[2], name);
         let file = self.open_file(&args[0]);
         let column = self.text_or_report(&args[1], "the name of a column");
         let (Some(file), Some(column)) = (file, column) else { return self.wrong(span) };
@@ -37,7 +56,11 @@ impl<'a> Context<'a> {
         if argument.ty == Ty::Wrong {
             return self.wrong(span);
         }
-        let pieces = Pieces { at, values, argument: argument.id, span };
+        let slopes = match shape {
+            Shape::Linear => Vec::new(),
+            Shape::Cubic => slopes(&at, &values),
+        };
+        let pieces = Pieces { at, values, slopes, argument: argument.id, span };
         self.choose_piece(&pieces, 0, pieces.at.len())
     }
 
@@ -125,18 +148,26 @@ impl<'a> Context<'a> {
         self.apply(Op::Select, [condition.id, before.id, after.id], Ty::Real, pieces.span)
     }
 
-    /// The line before knot k: `y + s (e - x)` from the knot before it; constant outside.
+    /// The line before knot k: `y + s (e - x)` from the knot before it, of a cubic `y + d (s + d (c2 + d c3))` with d = e - x; constant outside.
     fn piece(&mut self, pieces: &Pieces, k: usize) -> Value {
         let span = pieces.span;
         let from = k.saturating_sub(1);
         let value = self.unchecked(pieces.values[from], span);
-        if k == 0 || k == pieces.at.len() || pieces.values[k] == pieces.values[from] {
+        let is_flat = || pieces.powers(k).iter().all(|&power| power == 0.0);
+        if k == 0 || k == pieces.at.len() || is_flat() {
             return value;
         }
-        let slope = (pieces.values[k] - pieces.values[from]) / (pieces.at[k] - pieces.at[from]);
-        let (slope, knot) = (self.unchecked(slope, span), self.unchecked(pieces.at[from], span));
+        let knot = self.unchecked(pieces.at[from], span);
         let away = self.apply(Op::Sub, [pieces.argument, knot.id], Ty::Real, span);
-        let rise = self.apply(Op::Mul, [slope.id, away.id], Ty::Real, span);
+        // From the highest power down.
+        let mut powers = pieces.powers(k).into_iter().rev();
+        let mut rise = self.unchecked(powers.next().unwrap_or(0.0), span);
+        for power in powers {
+            let higher = self.apply(Op::Mul, [rise.id, away.id], Ty::Real, span);
+            let power = self.unchecked(power, span);
+            rise = self.apply(Op::Add, [power.id, higher.id], Ty::Real, span);
+        }
+        let rise = self.apply(Op::Mul, [rise.id, away.id], Ty::Real, span);
         self.apply(Op::Add, [value.id, rise.id], Ty::Real, span)
     }
 
@@ -146,4 +177,52 @@ impl<'a> Context<'a> {
         self.quantities.insert(number.id, Quantity::Unchecked);
         number
     }
+}
+
+impl Pieces {
+    /// What stands before the first and the higher powers of the distance from the knot before knot k.
+    fn powers(&self, k: usize) -> Vec<f64> {
+        let h = self.at[k] - self.at[k - 1];
+        let rise = (self.values[k] - self.values[k - 1]) / h;
+        match self.slopes.get(k - 1..=k) {
+            Some(&[first, last]) => {
+                vec![first, (3.0 * rise - 2.0 * first - last) / h, (first + last - 2.0 * rise) / (h * h)]
+            }
+            _ => vec![rise],
+        }
+    }
+}
+
+/// The slopes at the knots: weighted harmonic means of those of the lines beside, none where these turn. So the cubics rise and fall only
+/// where the rows do. (F. N. Fritsch and J. Butland, A method for constructing local monotone piecewise cubic interpolants, SIAM
+/// J. Sci. Stat. Comput. 5, 1984; at the ends the slope of a parabola, bounded.)
+fn slopes(at: &[f64], values: &[f64]) -> Vec<f64> {
+    let n = at.len();
+    let widths: Vec<f64> = at.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let rises: Vec<f64> = (0..widths.len()).map(|k| (values[k + 1] - values[k]) / widths[k]).collect();
+    if n <= 2 {
+        return vec![rises.first().copied().unwrap_or(0.0); n];
+    }
+    let end = |h: [f64; 2], rise: [f64; 2]| {
+        let slope = ((2.0 * h[0] + h[1]) * rise[0] - h[0] * rise[1]) / (h[0] + h[1]);
+        if slope * rise[0] <= 0.0 {
+            0.0
+        } else if rise[0] * rise[1] <= 0.0 && slope.abs() > 3.0 * rise[0].abs() {
+            3.0 * rise[0]
+        } else {
+            slope
+        }
+    };
+    let inner = |k: usize| {
+        let (before, after) = (rises[k - 1], rises[k]);
+        if before * after <= 0.0 {
+            return 0.0;
+        }
+        let (w, v) = (2.0 * widths[k] + widths[k - 1], widths[k] + 2.0 * widths[k - 1]);
+        (w + v) / (w / before + v / after)
+    };
+    let m = widths.len() - 1;
+    let first = end([widths[0], widths[1]], [rises[0], rises[1]]);
+    let last = end([widths[m], widths[m - 1]], [rises[m], rises[m - 1]]);
+    std::iter::once(first).chain((1..n - 1).map(inner)).chain([last]).collect()
 }

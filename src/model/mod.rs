@@ -31,6 +31,7 @@ mod modes;
 mod declare;
 mod choice;
 mod expression;
+mod lists;
 mod resolve;
 mod call;
 mod membership;

@@ -36,7 +36,7 @@ impl Context<'_> {
                 };
                 (truth, "`true` or `false`")
             }
-            Ty::Real | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::Wrong => {
+            Ty::Real | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::List(_) | Ty::Wrong => {
                 let value = text.trim().parse::<f64>().ok().map(|value| slot.scale().to_si(value));
                 // What is too large is not meant to be infinite.
                 let is_meant = |value: &f64| {

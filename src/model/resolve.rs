@@ -7,6 +7,7 @@ use super::error::{ModeError, NameError, PropertyError, TypeError};
 use super::ir::{Destination, ExprId, ExprKind, Inside, ModeId, TypeId};
 use super::suggest::closest;
 use super::types::Ty;
+use super::units;
 use crate::base::Span;
 use crate::math::Op;
 use crate::syntax::ast;
@@ -283,13 +284,29 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// `cars[3]` in an expression.
-    pub fn lower_index(&mut self, scope: &mut Scope<'a>, base: &'a ast::Expr, span: Span) -> Value {
+    /// `xs[3]` in an expression.
+    pub fn lower_index(
+        &mut self,
+        scope: &mut Scope<'a>,
+        base: &'a ast::Expr,
+        place: &'a ast::Expr,
+        span: Span,
+    ) -> Value {
         let value = self.lower(scope, base);
+        if let Ty::List(list) = value.ty {
+            return self.lower_element(scope, list, (base, place), span);
+        }
         if value.ty != Ty::Wrong {
             let found = self.describe(value.ty);
-            let needs = "an array of `system`, and only there";
-            self.report(TypeError::Operand { operator: "[ ]".to_string(), needs, found, span: base.span });
+            let needs = "a list, or in `system` an array of agents";
+            let text = self.sources.text(place.span);
+            let is_unit = text.contains(char::is_alphabetic) && units::parse(text).is_ok();
+            self.report(match is_unit {
+                true => TypeError::UnitBehind { unit: text.to_string(), base: base.span, span: place.span },
+                false => {
+                    TypeError::Operand { operator: "[ ]".to_string(), needs, found, span: base.span }
+                }
+            });
         }
         self.wrong(span)
     }

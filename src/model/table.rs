@@ -149,7 +149,7 @@ fn expected(ty: Ty) -> &'static str {
     match ty {
         Ty::Int => "a whole number",
         Ty::Bool => "`true` (1) or `false` (0)",
-        Ty::Real | Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::Wrong => "a number",
+        Ty::Real | Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::List(_) | Ty::Wrong => "a number",
     }
 }
 
@@ -182,7 +182,7 @@ fn read_cell(cell: &str, slot: Slot) -> Result<f64, String> {
             _ => None,
         },
         Ty::Int => number.ok().filter(|value| !value.is_finite() || value.fract() == 0.0),
-        Ty::Real | Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::Wrong => {
+        Ty::Real | Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::List(_) | Ty::Wrong => {
             number.ok().map(|value| slot.scale().to_si(value))
         }
     };

@@ -23,6 +23,8 @@ pub(super) enum Ty {
     Link(TypeId),
     /// `none`, before it is known of which type.
     Nobody,
+    /// A list, by its number; no value holds one.
+    List(usize),
     /// Something that has been reported already; it goes with everything.
     Wrong,
 }
@@ -42,7 +44,7 @@ impl Ty {
     pub fn agent_type(self) -> Option<TypeId> {
         match self {
             Ty::Agent(ty) | Ty::Link(ty) => Some(ty),
-            Ty::Real | Ty::Int | Ty::Bool | Ty::Text | Ty::Nobody | Ty::Wrong => None,
+            Ty::Real | Ty::Int | Ty::Bool | Ty::Text | Ty::Nobody | Ty::List(_) | Ty::Wrong => None,
         }
     }
 
@@ -53,7 +55,7 @@ impl Ty {
             Ty::Bool => Type::Bool,
             Ty::Agent(ty) => Type::Agent(ty),
             Ty::Link(ty) => Type::Link(ty),
-            Ty::Real | Ty::Text | Ty::Nobody | Ty::Wrong => Type::Real,
+            Ty::Real | Ty::Text | Ty::Nobody | Ty::List(_) | Ty::Wrong => Type::Real,
         }
     }
 
@@ -72,6 +74,7 @@ impl Ty {
             Ty::Agent(ty) => format!("an agent `{}`", types[ty].name),
             Ty::Link(ty) => format!("a link to `{}`, which may be none", types[ty].name),
             Ty::Nobody => "`none`".to_string(),
+            Ty::List(_) => "a list, of which one element is taken by `xs[0]`".to_string(),
             Ty::Wrong => "something that is wrong already".to_string(),
         }
     }
@@ -87,6 +90,13 @@ impl From<Type> for Ty {
             Type::Link(ty) => Ty::Link(ty),
         }
     }
+}
+
+/// What stands side by side in `[a, b, c]`.
+#[derive(Clone)]
+pub(super) struct List {
+    /// The elements, of one type.
+    pub elements: Vec<super::context::Value>,
 }
 
 /// What a value goes into: a declared type, and the unit that a bare literal is in.

@@ -11,13 +11,6 @@ use super::types::Slot;
 use crate::base::Span;
 use crate::syntax::ast::{self, AgentItem, BodyItem, FormulaKind, Item, RunSettingKind};
 
-/// Where a formula stands.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Depth {
-    Outermost,
-    Inside,
-}
-
 /// The name of the type; no other can have it.
 const NAME: &str = "run";
 
@@ -90,7 +83,7 @@ pub(super) fn fill<'a>(context: &mut Context<'a>, items: &[&'a Item]) {
             let (first, span) = (first.span, property.name.span);
             context.report(NameError::Taken { name: name.clone(), span, first });
         }
-        let formula = context.formula(&property.formula, &mut n_conditions, Depth::Outermost);
+        let formula = context.formula(&property.formula, &mut n_conditions);
         properties.push(Property { name, formula, span: property.name.span });
     }
     context.model.watch = Some(Watch { ty, properties });
@@ -103,7 +96,7 @@ impl<'a> Context<'a> {
     }
 
     /// A formula whose first condition has this number.
-    fn formula(&mut self, formula: &'a ast::Formula, next: &mut usize, depth: Depth) -> Formula {
+    fn formula(&mut self, formula: &'a ast::Formula, next: &mut usize) -> Formula {
         let number = *next;
         match &formula.kind {
             FormulaKind::Holds(_) => {
@@ -111,20 +104,17 @@ impl<'a> Context<'a> {
                 Formula::Holds(number)
             }
             FormulaKind::Until { window, .. } => {
-                if depth == Depth::Inside {
-                    self.refuse("`until` inside `always` or `eventually`", formula.span);
-                }
                 let [before, goal] = [number, number + 1];
                 *next += 2;
                 Formula::Until { before, window: self.window(window.as_ref()), goal }
             }
             FormulaKind::Always(window, inner) => {
                 let window = self.window(window.as_ref());
-                Formula::Always(window, Box::new(self.formula(inner, next, Depth::Inside)))
+                Formula::Always(window, Box::new(self.formula(inner, next)))
             }
             FormulaKind::Eventually(window, inner) => {
                 let window = self.window(window.as_ref());
-                Formula::Eventually(window, Box::new(self.formula(inner, next, Depth::Inside)))
+                Formula::Eventually(window, Box::new(self.formula(inner, next)))
             }
         }
     }

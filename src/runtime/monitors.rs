@@ -59,10 +59,13 @@ impl<'p> Engine<'p, '_> {
                     When::Now | When::Along(_) => {}
                 }
             }
-            Watched::Nested { operators, condition, trace } => {
-                let e = e.min(operators.iter().map(|(_, window)| window[1]).sum());
+            Watched::Nested { operators, inner } => {
+                let ahead = operators.iter().map(|(_, window)| window[1]).sum::<f64>() + inner.ahead();
+                let e = e.min(ahead);
                 if s < e {
-                    follow(&mut self.margins(conditions[*condition]), (s, e), trace);
+                    for (condition, trace) in inner.traces() {
+                        follow(&mut self.margins(conditions[condition]), (s, e), trace);
+                    }
                 }
             }
             Watched::Until { before, goal, window, least, found } => {

@@ -193,6 +193,99 @@ pub fn greatest_ahead(signal: &[Piece], [c, d]: [f64; 2]) -> Vec<Piece> {
     ahead
 }
 
+/// The signal of `before` until `goal`: the greatest, over the times s from t + c to t + d, of the lesser of the goal at s and the
+/// least of what holds from t until s.
+pub fn until_ahead(before: &[Piece], goal: &[Piece], [c, d]: [f64; 2]) -> Vec<Piece> {
+    // From t + c on it is that of the time t + c, if what is to hold before does until then; and within the window the goal is reached.
+    let ever = ever_reached(before, goal);
+    let begin = ever.first().map_or(0.0, |piece| piece.start);
+    let moved = ever.iter().map(|piece| piece.earlier(c)).filter(|piece| piece.end > begin);
+    let mut signal: Vec<Piece> = moved.map(|piece| piece.part(piece.start.max(begin), piece.end)).collect();
+    if c > 0.0 {
+        signal = lesser(&signal, &turned(&greatest_ahead(&turned(before), [0.0, c])));
+    }
+    if d.is_finite() {
+        signal = lesser(&signal, &greatest_ahead(goal, [c, d]));
+    }
+    signal
+}
+
+/// The same with all times to come for a window; from the end backwards.
+fn ever_reached(before: &[Piece], goal: &[Piece]) -> Vec<Piece> {
+    let mut signal: Vec<Piece> = Vec::new();
+    let (mut later, mut at) = (f64::NEG_INFINITY, 0.0);
+    for [p, q] in beside(before, goal).into_iter().rev() {
+        let (x, y) = (p.start, p.end);
+        let (p_end, q_end) = (p.at(y), q.at(y));
+        let is_rising = |piece: &Piece| piece.at(y) > piece.at(x);
+        let end = Piece::constant(x, y, q_end, Origin::At(q.origin.time(y)));
+        let after = Piece::constant(x, y, later, Origin::At(at));
+        let mut found = Vec::new();
+        if is_rising(&p) {
+            // What holds is least at once: the goal now, or the best to come as far as that holds.
+            let to_come = if is_rising(&q) && q_end > later { end } else { after };
+            let held = lesser(&[p], &[to_come]);
+            held.iter().for_each(|held| {
+                envelope(&[q.part(held.start, held.end), *held], held.start, held.end, &mut found);
+            });
+        } else {
+            let middle = 0.5 * (x + y);
+            let now = if is_rising(&q) && q.at(middle) < p.at(middle) { end } else { q };
+            let least = Piece::constant(x, y, p_end, Origin::At(p.origin.time(y)));
+            let held = if p_end < later { least } else { after };
+            envelope(&[now, held], x, y, &mut found);
+        }
+        if let Some(first) = found.first() {
+            (later, at) = (first.at(x), first.origin.time(x));
+        }
+        signal.extend(found.into_iter().rev());
+    }
+    signal.reverse();
+    signal
+}
+
+/// Two signals over the same stretches, on which each only rises or falls and they do not cross.
+fn beside(a: &[Piece], b: &[Piece]) -> Vec<[Piece; 2]> {
+    let [a, b] = [a, b].map(|signal| signal.iter().flat_map(|piece| piece.monotone()).collect::<Vec<_>>());
+    let mut pairs = Vec::new();
+    for [p, q] in stretches(&a, &b) {
+        let mut cuts = vec![p.start, p.end];
+        crossings(&p, &q, &mut cuts);
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup();
+        pairs.extend(cuts.windows(2).map(|cut| [p.part(cut[0], cut[1]), q.part(cut[0], cut[1])]));
+    }
+    pairs
+}
+
+/// Two signals over the same stretches.
+fn stretches(a: &[Piece], b: &[Piece]) -> Vec<[Piece; 2]> {
+    let (Some(a_first), Some(a_last), Some(b_first), Some(b_last)) =
+        (a.first(), a.last(), b.first(), b.last())
+    else {
+        return Vec::new();
+    };
+    let (begin, end) = (a_first.start.max(b_first.start), a_last.end.min(b_last.end));
+    let ends = a.iter().chain(b).flat_map(|piece| [piece.start, piece.end]);
+    let mut breaks: Vec<f64> = ends.filter(|&t| begin <= t && t <= end).collect();
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup();
+    let pair = |cut: &[f64]| {
+        let middle = 0.5 * (cut[0] + cut[1]);
+        [a, b].map(|signal| signal[holding(signal, middle)].part(cut[0], cut[1]))
+    };
+    breaks.windows(2).map(pair).collect()
+}
+
+/// The lesser of two signals, where both are.
+fn lesser(a: &[Piece], b: &[Piece]) -> Vec<Piece> {
+    let mut found = Vec::new();
+    for pair in stretches(a, b) {
+        envelope(&pair.map(|piece| piece.turned()), pair[0].start, pair[0].end, &mut found);
+    }
+    turned(&found)
+}
+
 /// The number of the piece that holds a time.
 fn holding(pieces: &[Piece], t: f64) -> usize {
     pieces.partition_point(|piece| piece.end < t).min(pieces.len() - 1)
@@ -323,6 +416,53 @@ mod tests {
         assert!((value + expected.sin()).abs() < 1e-9, "{value}");
         let base = origin.time(time);
         assert!((base - expected).abs() < 1e-6 || (base - expected - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn until_is_the_best_of_the_goal_while_the_other_holds() {
+        let wave = |f: fn(f64) -> f64, rate: fn(f64) -> f64| -> Vec<Piece> {
+            let piece = |k: usize| {
+                let [a, b] = [k, k + 1].map(|k| k as f64 / 100.0);
+                Piece::through(a, b, [f(a), f(b)], [rate(a), rate(b)])
+            };
+            (0..2000).map(piece).collect()
+        };
+        let p = |t: f64| 0.4 + (0.7 * t).cos();
+        let q = |t: f64| (1.3 * t).sin();
+        let before = wave(|t| 0.4 + (0.7 * t).cos(), |t| -0.7 * (0.7 * t).sin());
+        let goal = wave(|t| (1.3 * t).sin(), |t| 1.3 * (1.3 * t).cos());
+        for window in [[0.0, f64::INFINITY], [0.0, 2.0], [1.5, 4.0], [2.5, f64::INFINITY], [0.0, 0.0]] {
+            let signal = until_ahead(&before, &goal, window);
+            for k in 0..300 {
+                let t = k as f64 * 0.0517;
+                let (mut least, mut expected) = (f64::INFINITY, f64::NEG_INFINITY);
+                for j in 0..=20_000 {
+                    let s = t + j as f64 * 0.001;
+                    if s > 20.0 || s > t + window[1] + 1e-9 {
+                        break;
+                    }
+                    if s >= t + window[0] - 1e-9 {
+                        expected = expected.max(q(s).min(least));
+                    }
+                    least = least.min(p(s));
+                }
+                let actual = value(&signal, t);
+                assert!((actual - expected).abs() < 3e-3, "{window:?} at {t}: {actual} is not {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn until_is_reached_by_the_jump_that_ends_what_holds() {
+        let step = |first: f64, last: f64| {
+            let later = Origin::Later(0.0);
+            [Piece::constant(0.0, 1.0, first, later), Piece::constant(1.0, 3.0, last, later)]
+        };
+        let (holds, fails) = (f64::INFINITY, f64::NEG_INFINITY);
+        let signal = until_ahead(&step(holds, fails), &step(fails, holds), [0.0, f64::INFINITY]);
+        assert_eq!([0.2, 1.5, 2.5].map(|t| value(&signal, t)), [holds; 3]);
+        let signal = until_ahead(&step(holds, fails), &step(fails, holds), [0.0, 0.5]);
+        assert_eq!([0.2, 0.7].map(|t| value(&signal, t)), [fails, holds]);
     }
 
     #[test]

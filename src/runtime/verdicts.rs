@@ -5,7 +5,7 @@ use crate::codegen::program::{ClaimKind, ClaimSystem, Formula, Program, Property
 use crate::runtime::guards::{Guards, Origin};
 use crate::runtime::margins::{Margins, Spot, When};
 use crate::runtime::observe::Verdict;
-use crate::runtime::signal::{Piece, greatest, greatest_ahead, turned};
+use crate::runtime::signal::{Piece, greatest, greatest_ahead, turned, until_ahead};
 
 /// How well the pieces of a margin hit it, as a share of it (of 1, if it is less).
 pub const ACCURACY: f64 = 1e-10;
@@ -83,11 +83,71 @@ pub enum Watched {
     Nested {
         /// What each looks for, and over which window, outermost first.
         operators: Vec<(Extreme, [f64; 2])>,
-        /// The number of the condition.
-        condition: usize,
-        /// Its margin so far.
-        trace: Trace,
+        /// What they are over.
+        inner: Inner,
     },
+}
+
+/// What stands inside windows within windows: conditions by number, with their margins so far.
+#[derive(Clone, Debug)]
+pub enum Inner {
+    /// A condition.
+    Holds(usize, Trace),
+    /// A condition until another one.
+    Until {
+        /// What holds before, and the goal.
+        pair: [(usize, Trace); 2],
+        /// From when to when, s from now.
+        window: [f64; 2],
+    },
+}
+
+impl Inner {
+    /// Its conditions, with what has been seen of them.
+    pub fn traces(&mut self) -> Vec<(usize, &mut Trace)> {
+        match self {
+            Inner::Holds(condition, trace) => vec![(*condition, trace)],
+            Inner::Until { pair, .. } => {
+                pair.iter_mut().map(|(condition, trace)| (*condition, trace)).collect()
+            }
+        }
+    }
+
+    /// The end of its window, s from now.
+    pub fn ahead(&self) -> f64 {
+        match self {
+            Inner::Holds(..) => 0.0,
+            Inner::Until { window, .. } => window[1],
+        }
+    }
+
+    /// The margin at every time.
+    fn signal(&self) -> Vec<Piece> {
+        match self {
+            Inner::Holds(_, trace) => trace.pieces.clone(),
+            Inner::Until { pair: [before, goal], window } => {
+                until_ahead(&before.1.pieces, &goal.1.pieces, *window)
+            }
+        }
+    }
+
+    /// Who decides the margin, which at a time of one of its conditions has this value.
+    fn decider(&self, time: f64, value: f64) -> Option<&Decider> {
+        match self {
+            Inner::Holds(_, trace) => trace.decider(time),
+            Inner::Until { pair, .. } => {
+                let miss = |trace: &Trace| {
+                    let here = trace.pieces.iter().filter(|piece| piece.start <= time && time <= piece.end);
+                    here.map(
+                        |piece| if piece.at(time) == value { 0.0 } else { (piece.at(time) - value).abs() },
+                    )
+                    .fold(f64::INFINITY, f64::min)
+                };
+                let [before, goal] = pair;
+                if miss(&before.1) < miss(&goal.1) { before.1.decider(time) } else { goal.1.decider(time) }
+            }
+        }
+    }
 }
 
 /// The margin of a condition so far.
@@ -152,10 +212,7 @@ fn watched(formula: &Formula) -> Watched {
         let (extreme, window, inner) = match formula {
             Formula::Always(window, inner) => (Extreme::Least, window, inner),
             Formula::Eventually(window, inner) => (Extreme::Greatest, window, inner),
-            Formula::Until { before, window, goal } => {
-                let (before, goal, window) = (*before, *goal, *window);
-                return Watched::Until { before, goal, window, least: None, found: None };
-            }
+            Formula::Until { before, window, goal } => return until(operators, [*before, *goal], *window),
             Formula::Holds(condition) => return over(operators, *condition),
         };
         match operators.last_mut() {
@@ -172,30 +229,45 @@ fn over(operators: Vec<(Extreme, [f64; 2])>, condition: usize) -> Watched {
     match operators[..] {
         [] => Watched::Extreme { extreme: Extreme::Least, condition, window: [0.0; 2], found: None },
         [(extreme, window)] => Watched::Extreme { extreme, condition, window, found: None },
-        [..] => Watched::Nested { operators, condition, trace: Trace::default() },
+        [..] => Watched::Nested { operators, inner: Inner::Holds(condition, Trace::default()) },
     }
 }
 
-impl Trace {
-    /// The value of the operators over the condition at t = 0.
-    fn found(&self, operators: &[(Extreme, [f64; 2])]) -> Option<Found> {
-        let mut signal = self.pieces.clone();
-        for (extreme, window) in operators[1..].iter().rev() {
-            signal = match extreme {
-                Extreme::Greatest => greatest_ahead(&signal, *window),
-                Extreme::Least => turned(&greatest_ahead(&turned(&signal), *window)),
-            };
-        }
-        let (extreme, window) = operators[0];
-        if extreme == Extreme::Least {
-            signal = turned(&signal);
-        }
-        let (time, value, origin) = greatest(&signal, window)?;
-        let (value, time) = (-extreme.sign() * value, origin.time(time));
-        let decider = self.deciders.partition_point(|decider| decider.from <= time).checked_sub(1)?;
-        let Decider { closed, agents, .. } = self.deciders[decider].clone();
-        Some(Found { value, time, slack: ACCURACY * value.abs().max(1.0), closed, agents })
+/// Operators, outermost first, over a condition until another one.
+fn until(operators: Vec<(Extreme, [f64; 2])>, [before, goal]: [usize; 2], window: [f64; 2]) -> Watched {
+    if operators.is_empty() {
+        return Watched::Until { before, goal, window, least: None, found: None };
     }
+    let pair = [before, goal].map(|condition| (condition, Trace::default()));
+    Watched::Nested { operators, inner: Inner::Until { pair, window } }
+}
+
+impl Trace {
+    /// Who decides at a time.
+    fn decider(&self, time: f64) -> Option<&Decider> {
+        let number = self.deciders.partition_point(|decider| decider.from <= time).checked_sub(1)?;
+        self.deciders.get(number)
+    }
+}
+
+/// The value of the operators over what stands inside at t = 0.
+fn found_of(operators: &[(Extreme, [f64; 2])], inner: &Inner) -> Option<Found> {
+    let mut signal = inner.signal();
+    for (extreme, window) in operators[1..].iter().rev() {
+        signal = match extreme {
+            Extreme::Greatest => greatest_ahead(&signal, *window),
+            Extreme::Least => turned(&greatest_ahead(&turned(&signal), *window)),
+        };
+    }
+    let (extreme, window) = operators[0];
+    if extreme == Extreme::Least {
+        signal = turned(&signal);
+    }
+    let (time, value, origin) = greatest(&signal, window)?;
+    let (value, time) = (-extreme.sign() * value, origin.time(time));
+    let Decider { closed, agents, .. } = inner.decider(time, value)?.clone();
+    let slack = if value.is_finite() { ACCURACY * value.abs().max(1.0) } else { 0.0 };
+    Some(Found { value, time, slack, closed, agents })
 }
 
 fn verdict(property: &Property, watched: &Watched) -> Verdict {
@@ -203,8 +275,8 @@ fn verdict(property: &Property, watched: &Watched) -> Verdict {
         // Over an empty window `always` holds, and `eventually` does not.
         Watched::Extreme { extreme, found, .. } => (found.clone(), f64::INFINITY * extreme.sign()),
         Watched::Until { found, .. } => (found.clone(), f64::NEG_INFINITY),
-        Watched::Nested { operators, trace, .. } => {
-            (trace.found(operators), f64::INFINITY * operators[0].0.sign())
+        Watched::Nested { operators, inner } => {
+            (found_of(operators, inner), f64::INFINITY * operators[0].0.sign())
         }
     };
     let (name, span): (String, Span) = (property.name.clone(), property.span);

@@ -51,6 +51,7 @@ mod censuses;
 mod lives;
 mod imports;
 mod tables;
+mod lists;
 mod hierarchies;
 mod limits;
 mod first_steps;

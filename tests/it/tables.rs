@@ -144,3 +144,51 @@ fn errors_stand_in_the_file() {
     let (_, found) = Case::new("param a = table(\"t.csv\", \"v\")").refused();
     assert_eq!(found[0].code, "HY0226");
 }
+
+/// Rows of a rise that ends, at distances that differ in the second column.
+const RISE: &str = "t,v\n0,0\n1,1\n2,4\n3,4\n";
+
+#[test]
+fn a_spline_keeps_rows_and_shape() {
+    // slopes at the rows by hand: 0, the harmonic mean 1.5 of 1 and 3, 0 and 0
+    let model = "param at = 0  agent A(v: real) { state x = v  flow { x' = 0 } }
+        system { a = A(v = spline(\"rise.csv\", \"v\", at)) }  run { until 0 }";
+    let expected = [
+        ("-1", 0.0),
+        ("0", 0.0),
+        ("0.5", 0.3125),
+        ("1", 1.0),
+        ("1.5", 2.6875),
+        ("2", 4.0),
+        ("2.5", 4.0),
+        ("9", 4.0),
+    ];
+    for (at, v) in expected {
+        let run = Case::new(model).file("rise.csv", RISE).param("at", at).run();
+        near(run.value("a.x"), v, 1e-15);
+    }
+}
+
+#[test]
+fn rule_15_a_flow_of_a_spline_of_time_is_exact_at_any_tolerance() {
+    let run = Case::new(
+        "agent A { state x = 0  flow { x' = spline(\"rise.csv\", \"v\", time) }  half: when spline(\"rise.csv\", \"v\", time) >= 2.6875 { } }
+         system { a = A() }  run { until 3  tolerance 1e-2 }",
+    )
+    .file("rise.csv", RISE)
+    .run();
+    // a cubic over h is (first + last)/2 h + (slope at first - slope at last)/12 h^2
+    near(run.value("a.x"), (0.5 - 0.125) + (2.5 + 0.125) + 4.0, 1e-12);
+    all_near(&run.event_times(), &[1.5], 1e-12);
+}
+
+#[test]
+fn a_spline_of_two_rows_is_their_line() {
+    let run = Case::new(
+        "agent A { state x = 0  flow { x' = spline(\"two.csv\", \"v\", time) } }
+         system { a = A() }  run { until 2 }",
+    )
+    .file("two.csv", "t,v\n0,1\n2,5\n")
+    .run();
+    near(run.value("a.x"), 6.0, 1e-12);
+}

@@ -8,6 +8,7 @@ pub(super) mod events;
 pub(super) mod interactions;
 pub(super) mod data;
 pub(super) mod imports;
+pub(super) mod lists;
 pub(super) mod properties;
 
 pub(super) use data::{FileError, LimitError, OverrideError, RunError, SystemError, TableError, ValueError};
@@ -15,6 +16,7 @@ pub(super) use dimensions::{DimensionError, Evidence, Side};
 pub(super) use events::EventError;
 pub(super) use imports::ImportError;
 pub(super) use interactions::InteractionError;
+pub(super) use lists::ListError;
 pub(super) use modes::{ActionError, ModeError};
 pub(super) use names::NameError;
 pub(super) use properties::PropertyError;

@@ -13,7 +13,7 @@ use crate::model::context::{Body, Context};
 const VALUES: [&str; 8] = ["pi", "inf", "true", "false", "none", "time", "self", "index"];
 
 /// Keywords of four letters or more; in shorter ones a slip gives any other short name.
-const KEYWORDS: [&str; 46] = [
+const KEYWORDS: [&str; 47] = [
     "after",
     "agent",
     "always",
@@ -57,6 +57,7 @@ const KEYWORDS: [&str; 46] = [
     "rising",
     "crossing",
     "table",
+    "spline",
     "clamp",
     "hypot",
     "floor",

@@ -1,1 +1,2 @@
-property p = always time >= 0 until time >= 1
+agent A { state x = 0  flow { x' = 1 } }
+interaction Touch(a: A, b: A) { rate 2 [1/s] { a.x := 0 } }
