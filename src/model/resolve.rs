@@ -301,12 +301,12 @@ impl<'a> Context<'a> {
             let needs = "a list, or in `system` an array of agents";
             let text = self.sources.text(place.span);
             let is_unit = text.contains(char::is_alphabetic) && units::parse(text).is_ok();
-            self.report(match is_unit {
-                true => TypeError::UnitBehind { unit: text.to_string(), base: base.span, span: place.span },
-                false => {
-                    TypeError::Operand { operator: "[ ]".to_string(), needs, found, span: base.span }
-                }
-            });
+            let error = if is_unit {
+                TypeError::UnitBehind { unit: text.to_string(), base: base.span, span: place.span }
+            } else {
+                TypeError::Operand { operator: "[ ]".to_string(), needs, found, span: base.span }
+            };
+            self.report(error);
         }
         self.wrong(span)
     }

@@ -247,7 +247,9 @@ fn circles_are_named() {
 #[test]
 fn samples_of_a_record_are_limited() {
     let recorded = |every: &str| {
-        format!("agent A {{ state x = 0  flow {{ x' = 1 }} }}  system {{ a = A() }}  run {{ until 1  record a every {every} to \"a.csv\" }}")
+        format!(
+            "agent A {{ state x = 0  flow {{ x' = 1 }} }}  system {{ a = A() }}  run {{ until 1  record a every {every} to \"a.csv\" }}"
+        )
     };
     for every in ["1e-300", "5e-324", "1e-9"] {
         says(&refused(&recorded(every)), &["HY0535", "more than 100000000 samples", "--limit max_samples=N"]);

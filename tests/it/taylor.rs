@@ -153,3 +153,29 @@ fn the_listing_says_which_modes_have_a_series() {
     assert!(listing.contains("A.Alone flow series: 2 recurrences"), "{listing}");
     assert!(listing.contains("A.Led flow has no series: it reads other agents' states"), "{listing}");
 }
+
+#[test]
+fn a_pulse_that_leaves_no_trace_in_the_series_before_it_is_seen() {
+    for integrator in [Integrator::Auto, Integrator::Taylor] {
+        let run = Case::new(
+            "agent A { state y = 0  flow { y' = tanh(20*sin(4*time)) } }
+             agent B { state y = 0  flow { y' = sin(time)^50 }  full: when y >= 1 {} }
+             agent C { state y = 0  flow { y' = exp(-(time - 10)^2) } }
+             agent E { state y = 0  flow { y' = tanh(50*sin(time)) } }
+             system { a = A()  b = B()  c = C()  e = E() }
+             run { until 50  tolerance 1e-9 }",
+        )
+        .integrator(integrator)
+        .run();
+        let expected = [
+            ("a", integral(|t| (20.0 * (4.0 * t).sin()).tanh(), 0.0, 50.0)),
+            ("b", integral(|t| t.sin().powi(50), 0.0, 50.0)),
+            ("c", std::f64::consts::PI.sqrt()),
+            ("e", integral(|t| (50.0 * t.sin()).tanh(), 0.0, 50.0)),
+        ];
+        for (agent, expected) in expected {
+            near(run.value(&format!("{agent}.y")), expected, 1e-6);
+        }
+        assert_eq!(run.times("B.full").len(), 1);
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::harness::{all_near, near, refused, simulate, simulate_error};
+use crate::harness::{all_near, near, refused, simulate, simulate_by_both_forms, simulate_error};
 
 /// An agent with x' = v (discrete), a guard that counts, and nothing else.
 fn counting(x: &str, v: &str, guard: &str, more: &str, until: f64) -> Vec<f64> {
@@ -263,4 +263,105 @@ fn rule_03_a_condition_that_is_never_true_as_a_whole_does_not_fire() {
     assert_eq!(counting("-1", "1", "x < 0 and x > 0", "", 3.0), [0.0; 0]);
     // the other way round it is true all along
     assert_eq!(counting("-1", "1", "x <= 0 or x > 0", "", 3.0), [0.0]);
+}
+
+#[test]
+fn rule_03_what_is_true_just_after_an_instant_belongs_to_it() {
+    let run = simulate(
+        "agent A { discrete n: int = 0
+           lo: when time >= 0 { n := n + 1 }  hi: when time > 0 priority 5 { n := 10*n + 7 } }
+         system { a = A() }  run { until 1 }",
+    );
+    assert_eq!(run.value("a.n"), 8.0);
+    let run = simulate(
+        "agent A { state x = 0  discrete n: int = 0  out: when x > 0 { n := 1 }
+           initial mode P { flow { x' = 1 }  in_: when x >= 0 -> Q }  mode Q { flow { x' = -1 } } }
+         system { a = A() }  run { until 3 }",
+    );
+    assert_eq!((run.times("A.out").len(), run.times("A.in_").len()), (1, 1));
+    assert_eq!(run.value("a.n"), 1.0);
+}
+
+#[test]
+fn rule_03_a_guard_that_is_held_stays_held_when_its_flow_stops_on_the_boundary() {
+    let run = simulate(
+        "agent A { state x = 0  discrete n: int = 0
+           cnt: when x >= 0 { n := n + 1 }  back: when n == 1 -> Z { n := n + 1 }
+           initial mode P { flow { x' = -1 } }  mode Z { flow { x' = 0 } } }
+         system { a = A() }  run { until 3 }",
+    );
+    assert_eq!(run.value("a.n"), 2.0);
+    // Stopped by its own firing, on its boundary: `>` is false there, whatever else happens later.
+    let run = simulate(
+        "agent Pump { state level = 0  discrete on_: bool = true, shown: int = 0, alarms: int = 0
+           flow { level' = if on_ then 0.3 else 0 }
+           full: when level > 1 { on_ := false  alarms := alarms + 1 }
+           see: every 2 { shown := shown + 1 } }
+         system { a = Pump() }  run { until 9 }",
+    );
+    assert_eq!(run.value("a.alarms"), 1.0);
+    let run = simulate(
+        "agent A { state x = 0  discrete n: int = 2, c: int = 0
+           initial mode P { flow { x' = n }  g: when x > 1 -> P { n := n - 1  c := c + 1 } } }
+         system { a = A() }  run { until 5 }",
+    );
+    assert_eq!(run.value("a.c"), 2.0);
+}
+
+#[test]
+fn rule_03_the_second_rate_decides_between_agents_that_are_coupled() {
+    let run = simulate_by_both_forms(
+        "agent Leader { state x = 0  flow { x' = 25 } }
+         agent Car(lead: Leader) { state x = 0, v = 25  discrete n: int = 0
+           flow { x' = v  v' = -1 - x + lead.x }  hit: when x >= lead.x { n := n + 1 } }
+         system { first = Leader()  car = Car(lead = first) }  run { until 2 }",
+    );
+    assert_eq!(run.times("Car.hit"), [0.0]);
+    // A claim that is on its boundary and leaves it into what it says holds.
+    let run = simulate_by_both_forms(
+        "agent Leader { state x = 0  flow { x' = 25 } }
+         agent Car(lead: Leader) { state x = 0, v = 25
+           flow { x' = v  v' = -3 - 0.3*v + 0.3*(lead.x - x) }  assert lead.x > x }
+         system { first = Leader()  c = Car(lead = first) }  run { until 2 }",
+    );
+    assert!(run.false_asserts.is_empty());
+}
+
+#[test]
+fn rule_03_where_a_rate_turns_the_way_to_the_right_decides() {
+    // Each is armed on its boundary at t = 1 and moves out of what its guard says.
+    let armed = |guard: &str, x: &str, rate: &str| {
+        let text = format!(
+            "agent A {{ state x = {x}
+               initial mode Up {{ flow {{ x' = 2 }}  turn: after 1 -> Down }}
+               mode Down {{ flow {{ x' = {rate} }}  back: when {guard} -> End }}
+               mode End {{ flow {{ x' = 0 }} }} }}
+             system {{ a = A() }}  run {{ until 3 }}"
+        );
+        simulate(&text).times("A.back").len()
+    };
+    for (guard, x, rate) in [
+        ("min(2, x) >= 2", "0", "-2"),
+        ("max(x, 2) <= 2", "0", "1"),
+        ("abs(x) <= 0", "-2", "1"),
+        ("clamp(x, 0, 2) >= 2", "0", "-2"),
+        ("x >= 2", "0", "-2"),
+    ] {
+        assert_eq!(armed(guard, x, rate), 0, "{guard}");
+    }
+    assert_eq!(armed("min(2, x) >= 2", "0", "2"), 1);
+    assert_eq!(armed("abs(x) >= 0", "-2", "1"), 1);
+    assert_eq!(counting("0", "1", "abs(x) > 0", "", 2.0), [0.0]);
+    let run = simulate(
+        "agent A { state v = 0  flow { v' = 1 }  assert abs(v) > 0 }  system { a = A() }  run { until 3 }",
+    );
+    assert_eq!(run.value("a.v"), 3.0);
+    let run = simulate_by_both_forms(
+        "agent A { state x = 1  discrete k: int = 0, n: int = 0  flow { x' = 1/2 }
+           w: when k == 1 { n := n + 1 } }
+         agent B(o: A) { state y = 1  discrete m: int = 0  flow { y' = -1 }  h: when o.x >= 1 { m := m + 1 } }
+         interaction I(a: A, b: B) { g: when min(a.x, b.y) >= 1 { a.k := a.k + 1 } }
+         system { p = A()  q = B(o = p) }  run { until 3 }",
+    );
+    assert_eq!(run.times("I.g"), [0.0]);
 }

@@ -218,3 +218,14 @@ fn rule_11_rates_of_many_who_run_ahead() {
     );
     assert!(run.times("A.kick").len() > 500);
 }
+
+#[test]
+fn rule_11_a_hazard_that_fires_twice_within_the_resolution_of_time_fires_on() {
+    let run = simulate(
+        "agent A { discrete n: int = 0  h: rate 1e9 { n := n + 1 } }
+         system { a = A() }  run { until 1e-5  seed 3 }",
+    );
+    let n = run.value("a.n");
+    // Poisson of mean 10 000: six times its deviation.
+    assert!((n - 10_000.0).abs() < 600.0, "{n}");
+}

@@ -140,3 +140,24 @@ fn rule_12_an_end_beyond_what_can_be_followed_says_so() {
     let told = words(&[found]);
     assert!(told.contains("longer than it can be followed") && told.contains("smaller `until`"), "{told}");
 }
+
+#[test]
+fn rule_12_roots_that_come_nearer_than_the_resolution_of_time_are_no_silence() {
+    let (run, error) = simulate_error(
+        "agent A { state x = 0  discrete p = 1  flow { x' = 1 }  t: when x >= p { x := 0  p := p/2 } }
+         system { a = A() }  run { until 100 }",
+    );
+    assert_eq!(error.code, "HY0506");
+    near(run.time, 2.0, 1e-9);
+}
+
+#[test]
+fn rule_12_an_instant_in_which_births_never_end_is_an_error() {
+    let (_, error) = simulate_error(
+        "agent P(v: real) { state x = 0  discrete n: int = 0  flow { x' = v } }
+         interaction I(a: P, b: P) {
+           hit: when a.x >= b.x + 1 { destroy a  b.n := b.n + 1  create P(v = 10*a.v, x = a.x) } }
+         system { p = P[3](v = index) }  run { until 2.05 }",
+    );
+    assert_eq!(error.code, "HY0505");
+}

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use crate::harness::{near, simulate, simulate_error};
+use crate::harness::{near, simulate, simulate_by_both_forms, simulate_error};
 
 /// y(3.5) for y' = f(x), x = t, at a tolerance that by itself promises nothing.
 fn primitive(f: &str) -> f64 {
@@ -148,4 +148,23 @@ fn rule_15_a_reset_across_a_kink_takes_the_other_branch() {
          system { a = A() }  run { until 3  tolerance 1e-2 }",
     );
     near(run.value("a.y"), 12.0, 1e-10);
+}
+
+#[test]
+fn rule_15_a_flow_that_is_not_defined_beyond_its_branch_goes_on_at_the_kink() {
+    let run = simulate(
+        "agent A { state y = 0  flow { y' = sqrt(abs(time - 1)) } }
+         system { a = A() }  run { until 4  tolerance 1e-9 }",
+    );
+    near(run.value("a.y"), 2.0 / 3.0 * (1.0 + 3.0_f64.powf(1.5)), 1e-7);
+    // The leader's steps end where they end, not an ulp before.
+    for flow in ["if v > -40 then -2 else o.x", "min(0.5*v, k*o.x - 2)"] {
+        let run = simulate_by_both_forms(&format!(
+            "agent A {{ state x = 2, v = 1  flow {{ x' = v  v' = -2*x + 2*v + 2 }} }}
+             agent B(o: A) {{ state x = 1, v = 1  discrete k = 0  flow {{ x' = v  v' = {flow} }} }}
+             system {{ a = A()  b = B(o = a) }}  run {{ until 2 }}"
+        ));
+        // v falls from 1 to -3: both flows are -2 all along.
+        near(run.value("b.x"), -1.0, 1e-6);
+    }
 }
