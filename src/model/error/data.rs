@@ -1,6 +1,6 @@
 //! Failures of constants, of the command line's values, of `system` with its data files, of `run`; and the limits.
 
-use super::with_similar;
+use super::{with_similar, with_similar_or};
 use crate::base::{Diagnostic, Span};
 
 /// What is wrong with a value from the command line.
@@ -69,6 +69,7 @@ impl From<ValueError> for Diagnostic {
             ValueError::BadCount { value, span } => {
                 Diagnostic::error("HY0265", "the size of an array must be a whole number from 0 on")
                     .label(span, format!("this is {value}"))
+                    .help("write a whole number, or say how it becomes whole: `round`, `floor` or `ceil`")
             }
             ValueError::NotADistribution { span } => Diagnostic::error(
                 "HY0278",
@@ -124,7 +125,11 @@ impl From<SystemError> for Diagnostic {
                 if is_let {
                     return unknown.help(format!("`{name}` is a `let`: it follows from other values"));
                 }
-                with_similar(unknown, &similar)
+                with_similar_or(
+                    unknown,
+                    &similar,
+                    format!("declare `{name}` in `agent {agent}`, or leave it out here"),
+                )
             }
             SystemError::FollowsLink { name, span } => {
                 Diagnostic::error("HY0258", format!("`{name}` follows from its own expression"))
@@ -175,10 +180,11 @@ pub(in crate::model) enum TableError {
 impl From<TableError> for Diagnostic {
     fn from(error: TableError) -> Self {
         match error {
-            TableError::NoColumn { name, file, span, similar } => with_similar(
+            TableError::NoColumn { name, file, span, similar } => with_similar_or(
                 Diagnostic::error("HY0286", format!("`{file}` has no column `{name}`"))
                     .label(span, "in no place of its header line"),
                 &similar,
+                "columns are called what the first line of the file calls them",
             ),
             TableError::NoRows { span, used } => Diagnostic::error("HY0287", "a table without rows")
                 .label(span, "nothing follows")
@@ -260,6 +266,7 @@ impl From<FileError> for Diagnostic {
             FileError::BadCell { column, expected, found, span } => {
                 Diagnostic::error("HY0276", format!("column `{column}` needs {expected} in every row"))
                     .label(span, found)
+                    .help("write a value in every row; of what a column leaves out there is none")
             }
         }
     }
@@ -373,10 +380,11 @@ pub(in crate::model) enum RunError {
 impl From<RunError> for Diagnostic {
     fn from(error: RunError) -> Self {
         match error {
-            RunError::Unknown { name, span, similar } => with_similar(
+            RunError::Unknown { name, span, similar } => with_similar_or(
                 Diagnostic::error("HY0280", format!("`run` has no setting `{name}`"))
                     .label(span, "not known"),
                 &similar,
+                "among the settings are `until`, `tolerance`, `seed`, `record` and `events`",
             ),
             RunError::StepSize { name, span } => {
                 Diagnostic::error("HY0280", format!("a model contains no step size, and so no `{name}`"))

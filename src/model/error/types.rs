@@ -1,6 +1,6 @@
 //! Failures of types and units.
 
-use super::with_similar;
+use super::with_similar_or;
 use crate::base::{Diagnostic, Span};
 use crate::model::units::UnitProblem;
 
@@ -106,9 +106,10 @@ impl From<TypeError> for Diagnostic {
 /// `span` covers the brackets too; the problem's range counts from the first byte after the opening one.
 fn unit(problem: UnitProblem, span: Span) -> Diagnostic {
     match problem {
-        UnitProblem::Unknown { name, similar, .. } => with_similar(
+        UnitProblem::Unknown { name, similar, .. } => with_similar_or(
             Diagnostic::error("HY0228", format!("there is no unit `{name}`")).label(span, "not known"),
             &similar,
+            "units are those of SI, with prefixes: m, mm, kg, s, N, kW, and a few others: min, h, deg",
         ),
         UnitProblem::Offset { name, .. } => {
             Diagnostic::error("HY0228", format!("`{name}` is not a unit here: its zero is not absolute zero"))
