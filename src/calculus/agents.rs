@@ -10,6 +10,7 @@ use crate::calculus::flow;
 use crate::calculus::frame::{Scope, Value};
 use crate::calculus::graph::Node;
 use crate::calculus::guard;
+use crate::calculus::nonnegative::is_never_negative;
 use crate::calculus::symmetry;
 use crate::calculus::system::{
     ActionList, AgentSystem, ClaimKind, ClaimSystem, Column, Condition, FunctionId, Guard, InteractionSystem,
@@ -184,8 +185,27 @@ fn claim(
             guard::guard(draft, &mut scope, claim.condition, Sense::Negative, &name)?
         }
     };
+    let violation = match kind {
+        ClaimKind::Property => violation,
+        ClaimKind::Invariant | ClaimKind::Assert | ClaimKind::Rate => {
+            without_the_impossible(draft, violation)
+        }
+    };
     let (frame, message) = (scope.into_frame(), claim.message.clone());
     Ok(ClaimSystem { kind, frame, violation, message, span: claim.span })
+}
+
+/// The violation of a claim that something is not negative: it cannot be, if what is compared is a square, or the like. An
+/// algorithm that finds zeros within a tolerance need not look for it.
+fn without_the_impossible(draft: &Draft, violation: Guard) -> Guard {
+    let Condition::Atom(number) = violation.condition else { return violation };
+    let atom = &violation.atoms[number];
+    let impossible = atom.relation == Relation::Negative
+        && is_never_negative(&draft.graph, draft.functions[atom.value].outputs[0]);
+    if !impossible {
+        return violation;
+    }
+    Guard { condition: Condition::Constant(false), atoms: Vec::new(), n_rising: 0 }
 }
 
 /// Entry or exit actions, which have a frame of their own.
@@ -226,6 +246,7 @@ fn not_negative(
     let mut scope = Scope::of_self(ty);
     let name = format!("{} not negative", declared.label);
     let violation = guard::guard(draft, &mut scope, claim, Sense::Negative, &name)?;
+    let violation = without_the_impossible(draft, violation);
     let (frame, span) = (scope.into_frame(), declared.span);
     Ok(ClaimSystem { kind: ClaimKind::Rate, frame, violation, message: Some(declared.label.clone()), span })
 }

@@ -8,6 +8,7 @@
 //! operator.
 
 pub mod graph;
+mod nonnegative;
 mod relation;
 mod range;
 mod layout;

@@ -303,6 +303,12 @@ pub fn short(graph: &Graph, names: Names, id: NodeId) -> String {
     without_names(Sheet::new(graph, names, &[id]).definition(id))
 }
 
+/// The same as a side of a comparison.
+pub fn short_side(graph: &Graph, names: Names, id: NodeId) -> String {
+    let (text, strength) = Sheet::new(graph, names, &[id]).write(id);
+    without_names(if strength < Strength::Sum { format!("({text})") } else { text })
+}
+
 fn without_names(mut text: String) -> String {
     while let Some(at) = text.find('@') {
         let end = text[at + 1..].find(|c: char| !c.is_ascii_digit()).map_or(text.len(), |k| at + 1 + k);

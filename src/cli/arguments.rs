@@ -74,7 +74,7 @@ pub(super) struct SettingArguments {
     #[arg(short = 'p', long = "param", value_name = "NAME=VALUE", value_parser = pair)]
     pub(super) params: Vec<(String, String)>,
     /// Run until this time, in seconds
-    #[arg(long, value_name = "T", value_parser = finite_not_negative)]
+    #[arg(long, value_name = "T", value_parser = finite_not_negative, allow_negative_numbers = true)]
     pub(super) until: Option<f64>,
     /// Relative tolerance of a step
     #[arg(long, value_name = "E", value_parser = finite_positive)]
@@ -232,7 +232,7 @@ pub(super) struct CompareArguments {
     #[arg(long, value_delimiter = ',', value_name = "E,F,..", value_parser = finite_positive)]
     pub(super) tolerance: Vec<f64>,
     /// Run until this time, in seconds
-    #[arg(long, value_name = "T", value_parser = finite_not_negative)]
+    #[arg(long, value_name = "T", value_parser = finite_not_negative, allow_negative_numbers = true)]
     pub(super) until: Option<f64>,
     /// What evaluates the equations: the interpreter, and machine code as soon as that pays; or one of the two (the same bits)
     /// [default: auto]

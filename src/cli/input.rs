@@ -1,12 +1,12 @@
 //! From a path to a model: reads the file, and those that it names, and calls the doors of syntax and model.
 
 use std::fs;
-use std::io::{self, Read as _};
+use std::io::{self, ErrorKind, Read as _};
 use std::path::{Path, PathBuf};
 
 use super::limits::Limits;
 use super::{Exit, Refused};
-use crate::base::{Diagnostic, SourceMap};
+use crate::base::{Diagnostic, SourceMap, Span};
 use crate::model::ir::Model;
 use crate::model::{Checked, Files, Settings};
 use crate::syntax::{self, Ast};
@@ -30,13 +30,16 @@ pub(super) struct Parsed {
 
 /// The text of a model; `-` is standard input. Refused if it cannot be read or is not UTF-8.
 pub(super) fn read_text(path: &Path) -> Result<String, Refused> {
-    let bytes = match path.to_str() {
+    read_model(path)
+        .and_then(|bytes| String::from_utf8(bytes).map_err(|_| ErrorKind::InvalidData.into()))
+        .map_err(|error| format!("cannot read `{}`: {}", path.display(), reason(&error)))
+}
+
+fn read_model(path: &Path) -> io::Result<Vec<u8>> {
+    match path.to_str() {
         Some("-") => read_all(io::stdin().lock(), MODEL_BYTES_MAX),
         _ => read_bytes(path, MODEL_BYTES_MAX),
-    };
-    bytes
-        .and_then(|bytes| String::from_utf8(bytes).map_err(|_| io::ErrorKind::InvalidData.into()))
-        .map_err(|error| format!("cannot read `{}`: {}", path.display(), reason(&error)))
+    }
 }
 
 /// Reads and parses. Refused if the file cannot be read or is not UTF-8.
@@ -46,6 +49,35 @@ pub(super) fn parse(path: &Path) -> Result<Parsed, Refused> {
     let file = sources.add(name_of(path), text.as_str());
     let tree = syntax::parse(file, &text);
     Ok(Parsed { sources, tree })
+}
+
+/// The same, if it cannot be read with what is wrong at its place.
+fn parse_or_tell(path: &Path) -> Parsed {
+    let name = name_of(path);
+    let mut sources = SourceMap::default();
+    let (why, text, at, help) = match read_model(path) {
+        Ok(bytes) => match String::from_utf8(bytes) {
+            Ok(text) => {
+                let file = sources.add(name, text.as_str());
+                let tree = syntax::parse(file, &text);
+                return Parsed { sources, tree };
+            }
+            Err(error) => {
+                let at = error.utf8_error().valid_up_to();
+                let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
+                (reason(&ErrorKind::InvalidData.into()), text, at, "save it in UTF-8")
+            }
+        },
+        Err(error) => {
+            (reason(&error), String::new(), 0, "name a file with the text of a model; `-` is standard input")
+        }
+    };
+    let wide = text[at..].chars().next().map_or(0, char::len_utf8);
+    let file = sources.add(name.as_str(), text);
+    let diagnostic = Diagnostic::error("HY0120", format!("cannot read `{name}`: {why}"))
+        .label(Span::new(file, at, at + wide), "")
+        .help(help);
+    Parsed { sources, tree: Err(vec![diagnostic]) }
 }
 
 /// A model, or none and why.
@@ -60,7 +92,7 @@ pub(super) struct Loaded {
 }
 
 /// Errors of the user's words or of files, not of the model: a `-p` that cannot be, a file that cannot be read.
-const USAGE_CODES: [&str; 4] = ["HY0215", "HY0260", "HY0261", "HY0272"];
+const USAGE_CODES: [&str; 5] = ["HY0120", "HY0215", "HY0260", "HY0261", "HY0272"];
 
 impl Loaded {
     /// The exit code where there is no model.
@@ -70,9 +102,9 @@ impl Loaded {
     }
 }
 
-/// Reads, parses and checks.
+/// Reads, parses and checks. A model that cannot be read has an error like any other.
 pub(super) fn load(path: &Path, settings: &Settings) -> Result<Loaded, Refused> {
-    let Parsed { mut sources, tree } = parse(path)?;
+    let Parsed { mut sources, tree } = parse_or_tell(path);
     let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
     let mut files = Folder { folder, inputs: vec![path.to_path_buf()] };
     let Checked { model, diagnostics, warnings } = match tree {
@@ -118,6 +150,10 @@ impl Files for Folder {
             .map_err(|error| io::Error::new(error.kind(), reason(&error)))?;
         self.inputs.push(path);
         Ok(bytes)
+    }
+
+    fn identity(&self, path: &str) -> Option<PathBuf> {
+        fs::canonicalize(self.folder.join(path)).ok()
     }
 }
 

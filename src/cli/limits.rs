@@ -28,6 +28,7 @@ impl Limits {
                 "max_table_rows" => model.table_rows_max = size,
                 "max_configurations" => model.configurations_max = size,
                 "max_cells" => model.cells_max = size,
+                "max_samples" => model.samples_max = *value,
                 "max_evaluations" => model.evaluations_max = *value,
                 "max_operations" => model.operations_max = *value,
                 "max_microsteps" => run.microsteps_max = small,
@@ -36,7 +37,7 @@ impl Limits {
                 "max_guards" => run.guards_max = size,
                 "max_pieces" => run.pieces_max = small,
                 _ => {
-                    let of_model = "max_agents, max_values, max_states, max_modes, max_configurations, max_table_rows, max_cells, max_evaluations, max_operations";
+                    let of_model = "max_agents, max_values, max_states, max_modes, max_configurations, max_table_rows, max_cells, max_samples, max_evaluations, max_operations";
                     let of_run = "max_microsteps, zeno_events, max_steps, max_guards, max_pieces";
                     return Err(format!("there is no limit `{name}`; there are {of_model}, {of_run}"));
                 }

@@ -12,6 +12,7 @@ pub mod compare;
 mod input;
 mod progress;
 mod sinks;
+mod outputs;
 mod claims;
 mod warnings;
 mod sarif;

@@ -55,6 +55,10 @@ fn traces_of_table(path: &Path) -> Result<Traces, Refused> {
     if size > TABLE_MAX {
         return Err(refuse("it is larger than 1 GiB; record less often"));
     }
+    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+    if matches!(ending.as_deref(), Some("arrow" | "arrows" | "parquet")) {
+        return Err(refuse("only tables in CSV are drawn; have the run write one, or plot the model"));
+    }
     let text = fs::read_to_string(path).map_err(|error| refuse(&reason(&error)))?;
     Traces::read(&text).map_err(|why| refuse(&why))
 }

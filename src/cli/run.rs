@@ -5,24 +5,25 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use super::algorithm::{Computed, limits_of, single};
-use super::arguments::{AssertLevel, Outputs, RunArguments, SettingArguments};
+use super::arguments::{AssertLevel, RunArguments, SettingArguments};
 use super::input::{Loaded, load, name_of};
 use super::limits::Limits;
+use super::outputs::{OutputFiles, kind_of};
 use super::progress::ProgressLine;
 use super::refusal::{refuse_aggregates, refuse_endless, refuse_engine};
-use super::sinks::{Sinks, prepare_folder};
+use super::sinks::Sinks;
 use super::terminal::{complain, say, say_aside, tell};
 use super::warnings::Levels;
 use super::watch::watch;
 use super::{Exit, Refused, claims};
 use crate::base::{Diagnostic, SourceMap};
 use crate::calculus;
-use crate::codegen::program::{self, LetValue, Program, Record, VarRef};
+use crate::codegen::program::Program;
 use crate::codegen::{self, Backend};
 use crate::model::ir::Integrator;
 use crate::model::machinery::{BackendName, Named as _};
 use crate::model::{self, Model, Settings};
-use crate::output::{Cast, Column, Kind, Report, Sink, Tables, TypeColumns, statistics, summary};
+use crate::output::{Cast, Report, Sink, Tables, TypeColumns, statistics, summary};
 use crate::picture::{Recording, Scene, page};
 use crate::runtime::observe::{End, Outcome};
 use crate::runtime::{self, Algorithm};
@@ -72,16 +73,17 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     ];
 
     let cast = cast_of(&program);
+    let page_wanted = arguments.outputs.report.is_some();
+    let (record, watched) = page_wanted.then(|| watch(&model, &program)).transpose()?.unzip();
     let mut sinks = Sinks::new(&inputs);
-    let report_sink = arguments.outputs.report.as_deref().map(|path| sinks.open(path)).transpose()?;
-    let (record, watched) = report_sink.as_ref().map(|_| watch(&model, &program)).transpose()?.unzip();
+    let opened = OutputFiles::open(&arguments.outputs, &program, &mut sinks)?;
     let diagrams = model::diagrams(&model, &sources);
     let n_records = program.run.records.len();
     let mut recording = None;
     if watched.is_some() {
         recording = Some(Recording::new(&cast, &diagrams, n_records));
     }
-    let (mut tables, stats_sink) = open_outputs(arguments, &program, &cast, &sources, &mut sinks)?;
+    let (mut tables, whole) = opened.begin(&program, &cast, &sources)?;
     program.run.records.extend(record);
     if let Some(recording) = &mut recording {
         tables.also(recording);
@@ -121,11 +123,11 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     tell(&sources, &outcome.warnings);
     tell(&sources, &claims::diagnostics(&outcome.false_asserts, &cast));
     tell(&sources, &claims::of_properties(&outcome.verdicts));
-    if let Some(sink) = stats_sink {
+    if let Some(sink) = whole.statistics {
         write_whole(sink, &statistics(&report))?;
     }
     let summary = summary(&report);
-    if let (Some(sink), Some(watched), Some(mut recording)) = (report_sink, &watched, recording) {
+    if let (Some(sink), Some(watched), Some(mut recording)) = (whole.page, &watched, recording) {
         recording.close();
         let scene = Scene {
             title: &name_of(Path::new(arguments.model.file_name().unwrap_or_default())),
@@ -183,49 +185,6 @@ pub(super) fn compile(
     codegen::compile(system, backend).map_err(|diagnostic| vec![diagnostic])
 }
 
-/// Opens every file that the run will write: those of `run { }` in the folder, those of the command line where it says.
-fn open_outputs<'a>(
-    arguments: &RunArguments,
-    program: &Program,
-    cast: &'a Cast,
-    sources: &'a SourceMap,
-    sinks: &mut Sinks,
-) -> Result<(Tables<'a>, Option<Sink>), Refused> {
-    let wanted = &arguments.outputs;
-    let folder = prepare_folder(wanted.folder.as_deref())?;
-    let mut tables = Tables::new(cast);
-    let named = wanted.named == Outputs::Written;
-    let in_folder = |file: &String| folder.join(file);
-    let events =
-        wanted.events.clone().or_else(|| program.run.events.as_ref().filter(|_| named).map(in_folder));
-    if let Some(path) = events {
-        tables.event_log(sinks.open(&path)?).map_err(|error| error.to_string())?;
-    }
-    let n_records = program.run.records.len();
-    if wanted.record.is_some() && n_records > 1 {
-        return Err(format!(
-            "run {{ }} has {n_records} records with files of their own: leave `--record` out"
-        ));
-    }
-    for record in program.run.records.iter().filter(|_| named) {
-        let path = match (&wanted.record, &record.file) {
-            (Some(path), _) => path.clone(),
-            (None, Some(file)) => folder.join(file),
-            (None, None) => return Err("a `record` of the model names no file: add `--record FILE`".into()),
-        };
-        let columns = columns_of(program, record);
-        tables.trajectory(sinks.open(&path)?, &columns).map_err(|error| error.to_string())?;
-    }
-    if let Some(path) = &wanted.final_states {
-        tables.final_states(sinks.open(path)?).map_err(|error| error.to_string())?;
-    }
-    if let Some(path) = &wanted.explain_events {
-        tables.explanations(sinks.open(path)?, sources);
-    }
-    let stats = wanted.stats.as_deref().map(|path: &Path| sinks.open(path)).transpose()?;
-    Ok((tables, stats))
-}
-
 /// Runs until its end or the user's interruption; a second interruption ends the process at once.
 pub(super) fn simulate(
     algorithm: Algorithm,
@@ -268,31 +227,6 @@ fn conclude(outcome: &Outcome, sources: &SourceMap, asserts: AssertLevel) -> Exi
             if wrong && asserts == AssertLevel::Error { Exit::FalseClaim } else { Exit::Fine }
         }
     }
-}
-
-/// The columns of a record: each has room for what the agents of any type have there.
-fn columns_of(program: &Program, record: &Record) -> Vec<Column> {
-    let kind = |k: usize| {
-        let of_types = program.types.iter().zip(&record.variables);
-        let kinds = of_types.filter_map(|(ty, variables)| {
-            Some(match variables[k]? {
-                VarRef::State(_) => Kind::Number,
-                VarRef::Discrete(number) => kind_of(&ty.discretes[number]),
-                VarRef::Param(number) => kind_of(&ty.params[number]),
-                VarRef::Link(_) => Kind::Text,
-                VarRef::Let(number) => match ty.lets[number].value {
-                    LetValue::Condition(_) => Kind::Bool,
-                    LetValue::Number(_) => kind_of(&ty.lets[number].column),
-                },
-            })
-        });
-        kinds.reduce(Kind::with).unwrap_or(Kind::Number)
-    };
-    record.columns.iter().enumerate().map(|(k, name)| Column::new(name, kind(k))).collect()
-}
-
-fn kind_of(column: &program::Column) -> Kind {
-    if column.boolean { Kind::Bool } else { Kind::Number }
 }
 
 /// The names of the program's agents and columns.

@@ -1,7 +1,9 @@
 //! The files that a run writes: opened before it begins, so that nothing is computed that cannot be kept.
+//!
+//! All are opened before any is emptied: what a run has written stays, if the next one is refused.
 
-use std::fs::{self, File};
-use std::io;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use super::Refused;
@@ -14,16 +16,24 @@ pub(super) struct Sinks {
     taken: Vec<PathBuf>,
     on_stdout: bool,
     names: Vec<String>,
+    opened: Vec<Opened>,
+}
+
+/// A file as it was found.
+struct Opened {
+    path: PathBuf,
+    file: File,
+    is_new: bool,
 }
 
 impl Sinks {
     /// `inputs` are the files that must not be overwritten.
     pub(super) fn new(inputs: &[PathBuf]) -> Self {
         let inputs = inputs.iter().filter_map(|path| identity(path)).collect();
-        Self { inputs, taken: Vec::new(), on_stdout: false, names: Vec::new() }
+        Self { inputs, taken: Vec::new(), on_stdout: false, names: Vec::new(), opened: Vec::new() }
     }
 
-    /// Opens a file, emptied; `-` is standard output.
+    /// Opens a file and leaves in it what is there; `-` is standard output.
     pub(super) fn open(&mut self, path: &Path) -> Result<Sink, Refused> {
         if path == Path::new("-") {
             if std::mem::replace(&mut self.on_stdout, true) {
@@ -32,10 +42,20 @@ impl Sinks {
             return Ok(Sink { name: "standard output".into(), writer: Box::new(io::stdout()) });
         }
         self.take(path)?;
-        let file = File::create(path)
-            .map_err(|error| format!("cannot write `{}`: {}", path.display(), reason(&error)))?;
+        let (file, kept, is_new) = open_as_it_is(path).map_err(|error| unwritable(path, &error))?;
+        self.opened.push(Opened { path: path.to_path_buf(), file: kept, is_new });
         self.names.push(path.display().to_string());
         Ok(Sink { name: path.display().to_string(), writer: Box::new(file) })
+    }
+
+    /// The run begins: empties all files that have been opened.
+    pub(super) fn empty(&mut self) -> Result<(), Refused> {
+        for Opened { path, file, .. } in std::mem::take(&mut self.opened) {
+            let emptied =
+                file.metadata().and_then(|found| if found.is_file() { file.set_len(0) } else { Ok(()) });
+            emptied.map_err(|error| unwritable(&path, &error))?;
+        }
+        Ok(())
     }
 
     /// Whether one of the outputs is standard output.
@@ -59,6 +79,32 @@ impl Sinks {
         self.taken.push(identity);
         Ok(())
     }
+}
+
+impl Drop for Sinks {
+    /// A run that is refused leaves no empty files behind.
+    fn drop(&mut self) {
+        for opened in self.opened.iter().filter(|opened| opened.is_new) {
+            // Where this fails the file stays as empty as it is.
+            let _ = fs::remove_file(&opened.path);
+        }
+    }
+}
+
+/// A file to be written, twice, and whether it was not there.
+fn open_as_it_is(path: &Path) -> io::Result<(File, File, bool)> {
+    let (file, is_new) = match OpenOptions::new().write(true).create_new(true).open(path) {
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+            (OpenOptions::new().write(true).create(true).truncate(false).open(path)?, false)
+        }
+        created => (created?, true),
+    };
+    let kept = file.try_clone()?;
+    Ok((file, kept, is_new))
+}
+
+fn unwritable(path: &Path, error: &io::Error) -> Refused {
+    format!("cannot write `{}`: {}", path.display(), reason(error))
 }
 
 /// What tells one file from another, whether it exists or not; none for devices and pipes.

@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 
 use crate::base::{Span, number_text};
 use crate::calculus::graph::{Node, NodeId};
-use crate::calculus::print::{Names, short};
+use crate::calculus::print::{Names, short, short_side};
 use crate::calculus::system::{Atom, Frame, FunctionId, Sides};
 use crate::codegen::kernel::AgentView;
 use crate::codegen::program::Program;
@@ -102,7 +102,7 @@ impl Program {
             return Compared { span: atom.span, text, bound, left, right: 0.0, margin: f64::NAN };
         };
         let values = self.values(&[left, right], point);
-        let text = |id| short(&self.graph, self.names(point), id);
+        let text = |id| short_side(&self.graph, self.names(point), id);
         let difference = values[&left] - values[&right];
         let margin = match sign {
             "<=" | "<" => -difference,

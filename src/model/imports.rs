@@ -1,7 +1,7 @@
 //! The files that a model imports: read, parsed, each once.
 //!
-//! Paths are relative to the importing file; two paths are one file if they are the same once `.` and `..` are resolved. What an
-//! imported file declares stands before what the importing file does.
+//! Paths are relative to the importing file; two paths are one file if they are the same once `.` and `..` are resolved, or lead to
+//! the same place. What an imported file declares stands before what the importing file does.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -22,6 +22,8 @@ pub(super) struct Imports {
 /// A file whose imports are being read.
 struct Open {
     path: PathBuf,
+    /// What tells it from others.
+    identity: PathBuf,
     /// Where it is imported.
     span: Span,
 }
@@ -43,9 +45,10 @@ pub(super) fn gather(tree: &Ast, sources: &mut SourceMap, files: &mut dyn Files)
     // Other paths are relative to the model's own folder.
     let name = PathBuf::from(&sources.file(first.span.file).name);
     let path = PathBuf::from(name.file_name().unwrap_or_default());
-    let known = vec![path.clone()];
+    let identity = identity(files, &path);
+    let known = vec![identity.clone()];
     let mut reader = Reader { sources, files, open: Vec::new(), known, found };
-    reader.follow(tree, Open { path, span: first.span });
+    reader.follow(tree, Open { path, identity, span: first.span });
     reader.found
 }
 
@@ -69,16 +72,19 @@ impl Reader<'_> {
 
     fn import(&mut self, import: &Import, path: PathBuf) {
         let span = import.path.span;
-        if let Some(first) = self.open.iter().position(|file| file.path == path) {
+        let identity = identity(self.files, &path);
+        if let Some(first) = self.open.iter().position(|file| file.identity == identity) {
             let circle = self.open[first..].iter().map(|file| file.path.display().to_string()).collect();
             let via = self.open[first + 1..].iter().map(|file| file.span).collect();
             return self.report(ImportError::Circle { circle, via, span });
         }
-        if self.known.contains(&path) {
+        if self.known.contains(&identity) {
             return;
         }
-        self.known.push(path.clone());
-        let name = path.display().to_string();
+        self.known.push(identity.clone());
+        // Of `.` nothing is left once it is resolved.
+        let resolved = path.display().to_string();
+        let name = if resolved.is_empty() { import.path.value.clone() } else { resolved };
         let bytes = match self.files.read(&name) {
             Ok(bytes) => bytes,
             Err(error) => {
@@ -94,7 +100,7 @@ impl Reader<'_> {
         };
         match crate::syntax::parse(file, &self.sources.file(file).text) {
             Ok(tree) => {
-                self.follow(&tree, Open { path, span });
+                self.follow(&tree, Open { path, identity, span });
                 self.found.trees.push(tree);
             }
             Err(diagnostics) => self.found.diagnostics.extend(diagnostics),
@@ -104,6 +110,11 @@ impl Reader<'_> {
     fn report(&mut self, error: impl Into<Diagnostic>) {
         self.found.diagnostics.push(error.into());
     }
+}
+
+/// What tells a file from others: where it is, or the path if that is not known.
+fn identity(files: &dyn Files, path: &Path) -> PathBuf {
+    path.to_str().and_then(|path| files.identity(path)).unwrap_or_else(|| path.to_path_buf())
 }
 
 /// A path without `.` and, where something stands before it, without `..`.

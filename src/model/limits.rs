@@ -19,6 +19,8 @@ pub struct Limits {
     pub table_rows_max: usize,
     /// `max_cells`: cells of one sample, agents by columns of a `record`.
     pub cells_max: usize,
+    /// `max_samples`: samples of a `record ... every d`, up to the end of the run.
+    pub samples_max: u64,
     /// `max_evaluations`: operations that all constants together may take.
     pub evaluations_max: u64,
     /// `max_operations`: work on the equations once lets and functions are put in, in nodes looked at.
@@ -35,6 +37,7 @@ impl Default for Limits {
             configurations_max: 1_000,
             table_rows_max: 1_000,
             cells_max: 10_000_000,
+            samples_max: 100_000_000,
             evaluations_max: 50_000_000,
             operations_max: 200_000_000,
         }

@@ -99,6 +99,11 @@ pub struct Settings {
 pub trait Files {
     /// The bytes of the file at this path, relative to the model file: a data file, or an imported one.
     fn read(&mut self, path: &str) -> std::io::Result<Vec<u8>>;
+
+    /// What tells this file from others, however its path is written; none where that is not known, and the path alone tells.
+    fn identity(&self, _path: &str) -> Option<std::path::PathBuf> {
+        None
+    }
 }
 
 /// What a check comes to.

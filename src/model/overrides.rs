@@ -38,7 +38,11 @@ impl Context<'_> {
             }
             Ty::Real | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::List(_) | Ty::Wrong => {
                 let value = text.trim().parse::<f64>().ok().map(|value| slot.scale().to_si(value));
-                (value.filter(|value| !value.is_nan()), "a number")
+                // What is too large is not meant to be infinite.
+                let is_meant = |value: &f64| {
+                    value.is_finite() || value.is_infinite() && !text.contains(char::is_numeric)
+                };
+                (value.filter(is_meant), "a number")
             }
         };
         if number.is_none() {

@@ -7,6 +7,7 @@ use super::error::{ModeError, NameError, PropertyError, TypeError};
 use super::ir::{Destination, ExprId, ExprKind, Inside, ModeId, TypeId};
 use super::suggest::closest;
 use super::types::Ty;
+use super::units;
 use crate::base::Span;
 use crate::math::Op;
 use crate::syntax::ast;
@@ -298,7 +299,14 @@ impl<'a> Context<'a> {
         if value.ty != Ty::Wrong {
             let found = self.describe(value.ty);
             let needs = "a list, or in `system` an array of agents";
-            self.report(TypeError::Operand { operator: "[ ]".to_string(), needs, found, span: base.span });
+            let text = self.sources.text(place.span);
+            let is_unit = text.contains(char::is_alphabetic) && units::parse(text).is_ok();
+            let error = if is_unit {
+                TypeError::UnitBehind { unit: text.to_string(), base: base.span, span: place.span }
+            } else {
+                TypeError::Operand { operator: "[ ]".to_string(), needs, found, span: base.span }
+            };
+            self.report(error);
         }
         self.wrong(span)
     }

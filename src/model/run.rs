@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::Settings;
 use super::context::{Context, Home, Scope};
 use super::dimension::Dimension;
-use super::error::{FileError, RunError};
+use super::error::{FileError, LimitError, RunError};
 use super::ir::{Integrator, Record};
 use super::machinery::Named;
 use super::suggest::closest;
@@ -326,6 +326,12 @@ impl<'a> Context<'a> {
             self.choose(item, &mut choice);
         }
         let every = period.and_then(|period| self.run_number(&EVERY, period));
+        if let (Some(every), Some(period), Some(until)) = (every, period, self.model.run.until) {
+            let most = self.model.limits.samples_max;
+            if until / every > most as f64 {
+                self.report(LimitError::Samples { most, span: period.span });
+            }
+        }
         self.file_name(file);
         let record = self.chosen(choice, every, Some(file.value.clone()), span);
         self.model.run.records.extend(record);

@@ -87,7 +87,8 @@ pub(super) fn read_header(file: FileId, text: &str) -> Result<Header, FileError>
     for (number, name) in record.iter().enumerate() {
         let name = name.trim_start_matches('\u{feff}').trim();
         let span = cell_span(file, text, start, number);
-        let first = columns.iter().find(|(other, _)| !name.is_empty() && other == name);
+        let counts = !name.is_empty() && !name.starts_with('_');
+        let first = columns.iter().find(|(other, _)| counts && other == name);
         if let Some(&(_, first)) = first {
             return Err(FileError::ColumnTwice { name: name.to_string(), span, first });
         }
@@ -147,7 +148,7 @@ pub(super) fn read_rows(
 fn expected(ty: Ty) -> &'static str {
     match ty {
         Ty::Int => "a whole number",
-        Ty::Bool => "`true` or `false`",
+        Ty::Bool => "`true` (1) or `false` (0)",
         Ty::Real | Ty::Text | Ty::Agent(_) | Ty::Link(_) | Ty::Nobody | Ty::List(_) | Ty::Wrong => "a number",
     }
 }

@@ -292,6 +292,7 @@ impl Engine<'_, '_> {
 
     fn write(&mut self, write: &Write, written: &mut Written) {
         self.remember(write.agent, written);
+        self.agents.changes += 1;
         match write.target {
             Target::State(k) => {
                 self.restart(write.agent, written);
@@ -306,6 +307,7 @@ impl Engine<'_, '_> {
 
     fn enter_mode(&mut self, change: &Move, written: &mut Written) {
         self.remember(change.agent, written);
+        self.agents.changes += 1;
         self.restart(change.agent, written);
         self.restart_readers(change.agent, Layout::MODE, written);
         let time = self.present.time;
@@ -457,7 +459,8 @@ pub fn claims(engine: &Engine<'_, '_>, instance: u32, slots: &Slots) -> Vec<(usi
             regions(slots[slot], 0);
         }
     });
-    let own = transition.actions.writes.iter();
+    // Whom a link does not lead to is not written.
+    let own = transition.actions.writes.iter().filter(|&&(slot, _)| slots[slot] != ABSENT);
     claims.extend(own.map(|&(slot, target)| (slots[slot], Claimed::Column(target))));
     for change in moves {
         let modes = &system(change.agent).modes;

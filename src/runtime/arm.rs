@@ -472,7 +472,12 @@ impl<'p> Engine<'p, '_> {
                 instances.extend_from_slice(&self.guards.of_agent[reader]);
                 instances.extend_from_slice(self.guards.candidates.looking_at(reader));
             }
-            instances.extend_from_slice(&self.guards.over_type[self.agents.agents[agent].ty]);
+        }
+        let mut types: Vec<usize> = agents.iter().map(|&agent| self.agents.agents[agent].ty).collect();
+        types.sort_unstable();
+        types.dedup();
+        for ty in types {
+            instances.extend_from_slice(&self.guards.over_type[ty]);
         }
         instances.sort_unstable();
         instances.dedup();

@@ -147,7 +147,7 @@ impl<'p, 'o> Clocks<'p, 'o> {
         }
         if cover > ENDLESS {
             self.engine.present.go(cover);
-            return Err(Reason::NeverEnds { time: cover }.into());
+            return Err(Reason::NeverEnds { time: cover, until: self.engine.time_end }.into());
         }
         Ok(Turn::Step(lagging))
     }

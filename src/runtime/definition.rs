@@ -7,7 +7,7 @@ use crate::codegen::program::{
     Atom, ClaimSystem, Condition, Frame, Guard, LinkUpdate, Near, PairTransition, Program, Quantified, Range,
     Relation, Slot, TransitionSystem, Trigger,
 };
-use crate::runtime::fold;
+use crate::runtime::fold::{self, Shared};
 use crate::runtime::population::Agents;
 
 /// Which pairs of an interaction have instances, and which agents a quantifier looks at.
@@ -60,6 +60,8 @@ pub struct Definition<'p> {
     pub guard: Option<&'p Guard>,
     /// The aggregates that the condition reads, by number, each with the place of its filter's first comparison; rising.
     pub folds: Vec<(usize, usize)>,
+    /// The values of those of them that are the same for all instances.
+    pub shared: Shared,
     /// The comparisons: those of filters, then those of the guard.
     pub comparisons: Vec<&'p Atom>,
     /// The place of the guard's first comparison.
@@ -236,6 +238,7 @@ fn define<'p>(
         frame,
         guard,
         folds,
+        shared: Shared::new(agents.program, frame),
         comparisons,
         base,
         atoms,

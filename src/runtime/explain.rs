@@ -190,6 +190,7 @@ impl Engine<'_, '_> {
 
 /// Exchanges the agents' rows with those written over; a second time it undoes that.
 fn exchange(agents: &mut Agents<'_>, before: &mut FxHashMap<usize, (Vec<f64>, Vec<f64>)>) {
+    agents.changes += 1;
     for (&agent, (states, aux)) in before {
         std::mem::swap(&mut agents.agents[agent].states, states);
         std::mem::swap(&mut agents.agents[agent].aux, aux);

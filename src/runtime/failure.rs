@@ -275,6 +275,8 @@ pub enum Reason {
     NeverEnds {
         /// When, s.
         time: f64,
+        /// The end that is set, s; infinite if there is none.
+        until: f64,
     },
 }
 
@@ -385,7 +387,12 @@ impl Reason {
                     .add_to(with_blame(diagnostic, blame.as_ref()))
                     .help("check the operands: a division of zero by zero, a root or logarithm of a negative number?")
             }
-            Reason::NeverEnds { time } => {
+            Reason::NeverEnds { time, until } if until.is_finite() => {
+                Diagnostic::error("HY0511", "the run is longer than it can be followed")
+                    .note(format!("at t = {}, of {}", number_text(*time), number_text(*until)))
+                    .help("instants so late lie too far from one another: write a smaller `until`, or take a larger unit of time")
+            }
+            Reason::NeverEnds { time, .. } => {
                 Diagnostic::error("HY0511", "nothing can happen any more, and the run has no end")
                     .note(format!("at t = {time}"))
                     .help("write `until` in `run { }` or pass --until")

@@ -4,10 +4,12 @@
 //! evaluated on any rows, as a number with its rates or over boxes, and stands in its slot as if it were an agent with one
 //! column. Members do not change while rows do: where a condition of a filter changes, it is gathered again.
 
+use std::cell::Cell;
+
 use smallvec::SmallVec;
 
 use crate::codegen::kernel::{AgentBox, AgentView, Kernel};
-use crate::codegen::program::{Aggregate, Fold, Frame, Program, Term};
+use crate::codegen::program::{Aggregate, Condition, Fold, Frame, FunctionId, Program, Term};
 use crate::math::Interval;
 use crate::runtime::population::{ABSENT, Agents, Slots};
 use crate::runtime::present::{Boxes, Depth, Views, depth_read};
@@ -39,13 +41,67 @@ pub struct Leaf<T> {
 /// The values of the aggregates that a kernel reads.
 pub type Leaves<T> = SmallVec<[Leaf<T>; 1]>;
 
+/// The values of a frame's aggregates that read nothing of who asks and change at events only: they are worked out once
+/// between two changes of the agents, whoever asks.
+#[derive(Clone, Debug, Default)]
+pub struct Shared {
+    /// By number of the aggregate; none for one that is not shared.
+    known: Vec<Option<Cell<Known>>>,
+}
+
+/// A value, and after how many changes of the agents it was so.
+#[derive(Clone, Copy, Debug, Default)]
+struct Known {
+    changes: Option<u64>,
+    value: f64,
+}
+
+impl Shared {
+    /// Nothing is known yet.
+    pub fn new(program: &Program, frame: &Frame) -> Self {
+        let known = |fold: &Fold| is_shared(program, frame, fold).then(Cell::default);
+        Self { known: frame.folds.iter().map(known).collect() }
+    }
+
+    fn of(&self, number: usize) -> Option<&Cell<Known>> {
+        self.known.get(number).and_then(Option::as_ref)
+    }
+}
+
+/// Whether all who ask for an aggregate at one time are told the same, and so are those who ask before the next event.
+fn is_shared(program: &Program, frame: &Frame, fold: &Fold) -> bool {
+    let reads_no_fold = |function| read_by(frame, program.kernel(function)).next().is_none();
+    let filter = &fold.filter;
+    fold.reads.is_empty()
+        && !fold.range.other
+        && !fold.moves
+        && filter.atoms.is_empty()
+        && filter.n_rising == 0
+        && is_for_all(&filter.condition, &reads_no_fold)
+        && fold.term.as_ref().is_none_or(|term| reads_no_fold(term.value))
+}
+
+/// Whether a condition has no `other`, and its tests pass.
+fn is_for_all(condition: &Condition, test: &dyn Fn(FunctionId) -> bool) -> bool {
+    match condition {
+        Condition::Constant(_) => true,
+        Condition::Discrete(function) => test(*function),
+        Condition::And(all) | Condition::Or(all) => all.iter().all(|condition| is_for_all(condition, test)),
+        Condition::Exists(quantified) | Condition::Forall(quantified) => {
+            !quantified.other && is_for_all(&quantified.body, test)
+        }
+        Condition::Atom(_) | Condition::Rising(_, _) => false,
+    }
+}
+
 /// Says whether the agent bound in the slots belongs to the aggregate of this number.
 pub type Belongs<'b> = dyn FnMut(usize, &mut Slots) -> bool + 'b;
 
-/// The aggregates of a frame that a kernel reads, with their members. `own` are the agents that `other` leaves out.
+/// The aggregates of a frame that a kernel reads, with their members. `own` are the agents that `other` leaves out; `shared`
+/// knows values, and is told new ones.
 pub fn gather<'f>(
     agents: &Agents<'_>,
-    frame: &'f Frame,
+    (frame, shared): (&'f Frame, Option<&Shared>),
     kernel: &Kernel,
     slots: &Slots,
     own: &[usize],
@@ -54,6 +110,13 @@ pub fn gather<'f>(
     let mut all = Vec::new();
     for number in read_by(frame, kernel) {
         let fold = &frame.folds[number];
+        let known = shared.and_then(|shared| shared.of(number));
+        if let Some(Known { value, .. }) =
+            known.map(Cell::get).filter(|known| known.changes == Some(agents.changes))
+        {
+            all.push(Folded { fold, members: Vec::new(), still: Some(value) });
+            continue;
+        }
         let mut folded = Folded { fold, members: Vec::new(), still: None };
         let mut bound = slots.clone();
         for &agent in &agents.of_type[fold.range.ty] {
@@ -64,14 +127,20 @@ pub fn gather<'f>(
             agents.follow_links(frame, &mut bound);
             if belongs(number, &mut bound) {
                 let inner = fold.term.as_ref().map_or_else(Vec::new, |term| {
-                    gather(agents, frame, agents.program.kernel(term.value), &bound, own, belongs)
+                    gather(agents, (frame, shared), agents.program.kernel(term.value), &bound, own, belongs)
                 });
                 folded.members.push(Member { slots: bound.clone(), inner });
             }
         }
         if !fold.moves {
             let row = |agent: usize| aux_only(agents, agent);
-            folded.still = Some(folded.jet(agents.program, Depth::States, f64::NAN, &row)[0]);
+            let value = folded.jet(agents.program, Depth::States, f64::NAN, &row)[0];
+            folded.still = Some(value);
+            if let Some(known) = known {
+                // Nothing that flows is read of them.
+                folded.members = Vec::new();
+                known.set(Known { changes: Some(agents.changes), value });
+            }
         }
         all.push(folded);
     }

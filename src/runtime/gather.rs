@@ -214,15 +214,10 @@ impl Engine<'_, '_> {
         if near >= time {
             return time;
         }
-        let mut agents: Vec<usize> = Vec::new();
-        for &(index, _) in changed {
-            let instance = self.guards.atoms[index].instance;
-            for agent in self.guards.roots(instance) {
-                if !agents.contains(&agent) {
-                    agents.push(agent);
-                }
-            }
-        }
+        let roots = |&(index, _): &(usize, f64)| self.guards.roots(self.guards.atoms[index].instance);
+        let mut agents: Vec<usize> = changed.iter().flat_map(roots).collect();
+        agents.sort_unstable();
+        agents.dedup();
         let mut defined = |time: f64| {
             self.present.go(time);
             agents.iter().all(|&agent| {

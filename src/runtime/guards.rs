@@ -29,6 +29,8 @@ pub struct Instance {
     pub rising: u32,
     /// Its first list of candidates.
     pub lists: u32,
+    /// Whether it has agents.
+    pub listed: bool,
     /// Whether the mode it belongs to is active.
     pub active: bool,
     /// Rule 2.
@@ -159,6 +161,8 @@ pub struct Guards<'p> {
     free: Vec<Vec<u32>>,
     /// Those that had an agent that died in the instant at hand.
     retired: Vec<u32>,
+    /// Types over which some of these range.
+    thinned: Vec<usize>,
 }
 
 /// More instances than the limit allows.
@@ -189,6 +193,7 @@ impl<'p> Guards<'p> {
             n_pairs: 0,
             free: vec![Vec::new(); definitions.len()],
             retired: Vec::new(),
+            thinned: Vec::new(),
         };
         for (number, definition) in definitions.iter().enumerate() {
             if definition.near.is_empty() {
@@ -212,6 +217,7 @@ impl<'p> Guards<'p> {
             atoms: self.atoms.len() as u32,
             rising: self.rising.len() as u32,
             lists: self.candidates.add_lists(definition.nearby.len()),
+            listed: true,
             active: false,
             armed: false,
             aged: false,
@@ -247,7 +253,7 @@ impl<'p> Guards<'p> {
             self.leave_out(agents, instance);
             return instance;
         };
-        self.instances[instance as usize].roots = roots;
+        (self.instances[instance as usize].roots, self.instances[instance as usize].listed) = (roots, true);
         for root in self.roots(instance) {
             self.of_agent[root].push(instance);
         }
@@ -267,11 +273,13 @@ impl<'p> Guards<'p> {
     }
 
     /// Takes an instance from its agents; whatever is in a queue for it is void. It is not used again before
-    /// [`Guards::free_retired`]: the instant at hand may still refer to it.
+    /// [`Guards::free_retired`]: the instant at hand may still refer to it. It is among those that range over a type before
+    /// [`Guards::thin`].
     pub fn retire(&mut self, instance: u32) {
         let state = &mut self.instances[instance as usize];
         state.active = false;
         state.armed = false;
+        state.listed = false;
         state.arming += 1;
         for index in self.atoms_of(instance) {
             self.atoms[index].version += 1;
@@ -281,11 +289,26 @@ impl<'p> Guards<'p> {
             self.hearing[root].retain(|&other| other != instance);
         }
         let number = self.instances[instance as usize].definition as usize;
-        for &ty in self.definitions[number].looked_over() {
-            self.over_type[ty].retain(|&other| other != instance);
-        }
+        self.thinned.extend_from_slice(self.definitions[number].looked_over());
         self.dismiss_all(instance);
         self.retired.push(instance);
+    }
+
+    /// Retires all instances of an agent that dies.
+    pub fn retire_all(&mut self, agent: usize) {
+        self.hearing[agent] = Vec::new();
+        for instance in std::mem::take(&mut self.of_agent[agent]) {
+            self.retire(instance);
+        }
+    }
+
+    /// Takes instances that have been retired from among those that range over a type.
+    pub fn thin(&mut self) {
+        self.thinned.sort_unstable();
+        self.thinned.dedup();
+        for ty in std::mem::take(&mut self.thinned) {
+            self.over_type[ty].retain(|&instance| self.instances[instance as usize].listed);
+        }
     }
 
     /// Nothing refers any more to the instances that have been retired.
@@ -333,8 +356,7 @@ impl<'p> Guards<'p> {
 
     /// Whether an instance has agents.
     pub fn is_listed(&self, instance: u32) -> bool {
-        let root = self.instances[instance as usize].roots[0] as usize;
-        self.of_agent[root].contains(&instance)
+        self.instances[instance as usize].listed
     }
 
     /// Whether a definition has an instance that nobody has any more.

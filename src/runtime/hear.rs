@@ -86,20 +86,22 @@ impl Engine<'_, '_> {
             while let Some(inbox) = self.mail.inboxes.get(&agent)
                 && let Some(message) = inbox.messages.front().cloned()
             {
-                let (begun, before) = (inbox.begun, inbox.heard.then(|| inbox.enabled.clone()));
+                let before = inbox.heard.then(|| inbox.enabled.clone());
+                let heard = before.is_some();
                 let mut enabled = self.enabled_by(&message, agent);
                 if let Some(before) = before {
                     enabled.retain(|instance| before.contains(instance));
                 }
                 let Some(inbox) = self.mail.inboxes.get_mut(&agent) else { break };
                 if !enabled.is_empty() {
-                    let heard = enabled.iter().map(|&(instance, _)| Candidate { instance, by: By::Message });
-                    candidates.extend(heard);
-                    (inbox.begun, inbox.enabled) = (true, enabled);
+                    let hearing =
+                        enabled.iter().map(|&(instance, _)| Candidate { instance, by: By::Message });
+                    candidates.extend(hearing);
+                    inbox.enabled = enabled;
                     break;
                 }
                 inbox.end_turn();
-                if !begun {
+                if !heard {
                     // It has been missed: this was its turn.
                     break;
                 }

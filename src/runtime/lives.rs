@@ -317,19 +317,36 @@ impl Engine<'_, '_> {
     fn bury(&mut self, written: &mut Written) -> Result<(), Failure> {
         let doomed = std::mem::take(&mut written.doomed);
         let dying: FxHashSet<usize> = doomed.iter().map(|doomed| doomed.agent).collect();
+        if doomed.is_empty() {
+            return Ok(());
+        }
+        let mut done = Ok(());
         for doomed in doomed {
             if self.agents.is_alive(doomed.agent) {
-                self.unlink(doomed, &dying, written)?;
+                done = self.unlink(doomed, &dying, written);
+                if done.is_err() {
+                    break;
+                }
                 self.remove(doomed.agent, written);
             }
         }
-        for agent in dying {
-            written.before.remove(&agent);
-            written.restarted.remove(&agent);
-            written.relinked.retain(|&other| other != agent);
-            written.born.retain(|&other| other != agent);
-        }
-        Ok(())
+        self.strike_out(&dying, written);
+        done
+    }
+
+    /// Takes the dead among these out of the lists of many; once for all of them.
+    fn strike_out(&mut self, dying: &FxHashSet<usize>, written: &mut Written) {
+        let mut dead = dying.clone();
+        dead.retain(|&agent| !self.agents.is_alive(agent));
+        self.agents.close_ranks();
+        self.guards.thin();
+        self.neighbours.unlist(&dead);
+        self.recorder.dismiss(&dead);
+        self.hot.retain(|agent| !dead.contains(agent));
+        written.before.retain(|agent, _| !dead.contains(agent));
+        written.restarted.retain(|agent| !dead.contains(agent));
+        written.relinked.retain(|agent| !dead.contains(agent));
+        written.born.retain(|agent| !dead.contains(agent));
     }
 
     /// Takes the links to an agent from those who live on.
@@ -378,7 +395,7 @@ impl Engine<'_, '_> {
         self.agents.free_retired();
     }
 
-    /// Takes an agent out of everything.
+    /// Takes an agent out of everything but what [`Engine::strike_out`] sees to.
     fn remove(&mut self, agent: usize, written: &mut Written) {
         self.restart(agent, written);
         let ty = self.agents.agents[agent].ty;
@@ -389,18 +406,14 @@ impl Engine<'_, '_> {
         if group.members.is_empty() {
             self.groups.dissolve(number);
         }
-        for instance in self.guards.of_agent[agent].clone() {
-            self.guards.retire(instance);
-        }
+        self.guards.retire_all(agent);
         self.mail.forget(agent);
         self.neighbours.forget(&self.agents, agent);
         written.bereft.extend(self.guards.dismiss_everywhere(&self.agents, agent));
         self.agents.dismiss(agent);
         self.guards.reseat(&self.agents, agent);
-        self.recorder.dismiss(agent);
         if self.agents.cold.is_used() {
             self.agents.cold.dismiss(agent);
-            self.hot.retain(|&other| other != agent);
         }
         if !written.died.contains(&ty) {
             written.died.push(ty);

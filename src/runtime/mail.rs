@@ -54,8 +54,6 @@ impl Ord for Later {
 pub struct Inbox {
     /// The first is at its turn, or comes next.
     pub messages: VecDeque<Rc<Message>>,
-    /// The first has been at its turn before.
-    pub begun: bool,
     /// Something has fired by the first.
     pub heard: bool,
     /// The instances that the first enabled in the micro-step at hand, with their armings, but those that have fired by it.
@@ -66,7 +64,7 @@ impl Inbox {
     /// Ends the turn of the first message.
     pub fn end_turn(&mut self) {
         self.messages.pop_front();
-        (self.begun, self.heard) = (false, false);
+        self.heard = false;
         self.enabled.clear();
     }
 }

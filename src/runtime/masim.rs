@@ -71,7 +71,7 @@ impl Engine<'_, '_> {
                 return Ok(None);
             } else if cover > ENDLESS {
                 self.present.go(cover);
-                return Err(Reason::NeverEnds { time: cover }.into());
+                return Err(Reason::NeverEnds { time: cover, until: self.time_end }.into());
             } else {
                 self.advance_laggard(cover)?;
             }
@@ -126,7 +126,7 @@ impl Engine<'_, '_> {
     /// The end: the last rows, and the state of every agent at T (rule 12).
     pub fn finish(&mut self) -> Result<End, Failure> {
         if self.time_end == f64::INFINITY {
-            return Err(Reason::NeverEnds { time: self.present.time }.into());
+            return Err(Reason::NeverEnds { time: self.present.time, until: self.time_end }.into());
         }
         let end = self.time_end;
         for agent in self.agents.living() {

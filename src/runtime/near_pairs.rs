@@ -127,6 +127,7 @@ impl<'p> Engine<'p, '_> {
         for old in before {
             self.let_go(old, field);
         }
+        self.guards.thin();
         Ok(())
     }
 

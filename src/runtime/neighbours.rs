@@ -4,6 +4,7 @@
 //! come within it before the list is made anew. Each agent has a box: where it can get to until then, in the states that
 //! are compared, with half of the range around it. Pairs whose boxes do not overlap cannot make the condition true.
 
+use rustc_hash::FxHashSet;
 use smallvec::SmallVec;
 
 use crate::math::Interval;
@@ -102,7 +103,7 @@ impl Field {
 }
 
 impl Neighbours {
-    /// Forgets the box and the pairs of an agent that dies.
+    /// Forgets the box of an agent that dies; its pairs are listed before [`Neighbours::unlist`].
     pub fn forget(&mut self, agents: &Agents<'_>, agent: usize) {
         for field in &mut self.fields {
             for side in field.sides() {
@@ -113,7 +114,15 @@ impl Neighbours {
                     field.grid.change(number, &nowhere);
                 }
             }
-            field.listed.retain(|listed| !listed.agents.contains(&(agent as u32)));
+        }
+    }
+
+    /// Forgets the pairs of agents that have died.
+    pub fn unlist(&mut self, dead: &FxHashSet<usize>) {
+        for field in &mut self.fields {
+            field
+                .listed
+                .retain(|listed| listed.agents.iter().all(|&agent| !dead.contains(&(agent as usize))));
         }
     }
 }

@@ -79,6 +79,8 @@ pub struct Agents<'p> {
     pub seats: Vec<Vec<usize>>,
     /// How many agents there have been.
     pub n_numbers: usize,
+    /// How often a column that guards may read, or who is among them, has changed.
+    pub changes: u64,
     /// For each type, how many have been created and destroyed.
     pub turnover: Vec<[u64; 2]>,
     /// Seats of each type that nobody has.
@@ -156,6 +158,7 @@ impl<'p> Agents<'p> {
             program,
             seats: of_type.clone(),
             n_numbers: program.population.agents.len(),
+            changes: 0,
             turnover: vec![[0; 2]; program.types.len()],
             free_seats: vec![Vec::new(); program.types.len()],
             free: Vec::new(),
@@ -291,6 +294,7 @@ impl<'p> Agents<'p> {
         let ty = agent.ty;
         agent.number = self.n_numbers;
         self.n_numbers += 1;
+        self.changes += 1;
         self.turnover[ty][0] += 1;
         let place = self.free.pop().unwrap_or(self.agents.len());
         agent.seat = self.free_seats[ty].pop().expect("a seat has been made");
@@ -319,20 +323,31 @@ impl<'p> Agents<'p> {
         self.free_seats[ty].extend((before..after).rev());
     }
 
-    /// Takes a dead agent out of all sets, and its links from those whom they led to. Its place is free after the instant.
+    /// Takes a dead agent's seat, and its links from those whom they led to. Its place is free after the instant; it is among
+    /// those of its type before [`Agents::close_ranks`].
     pub fn dismiss(&mut self, place: usize) {
         let layout = self.layout(place);
         for link in 0..layout.n_links {
             self.link(place, link, ABSENT);
         }
-        let Agent { ty, seat, number, .. } = self.agents[place];
-        let rank = self.of_type[ty].partition_point(|&other| self.agents[other].number < number);
-        self.of_type[ty].remove(rank);
+        let Agent { ty, seat, .. } = self.agents[place];
         self.seats[ty][seat] = ABSENT;
         self.free_seats[ty].push(seat);
         self.turnover[ty][1] += 1;
         self.agents[place].number = NOBODY;
         self.retired.push(place);
+        self.changes += 1;
+    }
+
+    /// Takes those who have been dismissed out of the lists of their types.
+    pub fn close_ranks(&mut self) {
+        self.changes += 1;
+        let mut types: Vec<usize> = self.retired.iter().map(|&place| self.agents[place].ty).collect();
+        types.sort_unstable();
+        types.dedup();
+        for ty in types {
+            self.of_type[ty].retain(|&place| self.agents[place].number != NOBODY);
+        }
     }
 
     /// The instant is over: nothing refers to those who died in it.
@@ -361,6 +376,7 @@ impl<'p> Agents<'p> {
             self.linked_from[to].push(from);
         }
         self.agents[from].aux[column] = if to == ABSENT { -1.0 } else { to as f64 };
+        self.changes += 1;
     }
 
     /// Who has a link to an agent; once for each link.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::codegen::program::{Layout, LetValue, Program, Record, VarRef};
 use crate::math::Scale;
@@ -61,11 +61,11 @@ impl<'p> Recorder<'p> {
         }
     }
 
-    /// Takes an agent out that has died.
-    pub fn dismiss(&mut self, place: usize) {
+    /// Takes agents out that have died.
+    pub fn dismiss(&mut self, dead: &FxHashSet<usize>) {
         for recording in &mut self.records {
-            recording.roster.retain(|&other| other != place);
-            recording.last.remove(&place);
+            recording.roster.retain(|place| !dead.contains(place));
+            recording.last.retain(|place, _| !dead.contains(place));
         }
     }
 

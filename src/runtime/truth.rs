@@ -72,8 +72,8 @@ impl<'p> Truths<'_, 'p> {
                 let index = self.guards.atom_index(self.agents, at.instance, atom, slots);
                 self.atom(at, self.guards.definition(at.instance).comparisons[atom].relation, index)
             }
-            Condition::And(all) => all.iter().all(|condition| self.condition(at, condition, slots)),
-            Condition::Or(all) => all.iter().any(|condition| self.condition(at, condition, slots)),
+            Condition::And(all) => cheap_first(all).all(|condition| self.condition(at, condition, slots)),
+            Condition::Or(all) => cheap_first(all).any(|condition| self.condition(at, condition, slots)),
             Condition::Exists(quantified) => self.first(at, quantified, slots, true).is_some(),
             Condition::Forall(quantified) => self.first(at, quantified, slots, false).is_none(),
             Condition::Rising(number, condition) => {
@@ -121,7 +121,8 @@ impl<'p> Truths<'_, 'p> {
         }
         let roots = self.guards.roots(instance);
         let frame = definition.frame;
-        fold::gather(self.agents, frame, kernel, slots, &roots, &mut |number, slots| {
+        let told = (frame, Some(&definition.shared));
+        fold::gather(self.agents, told, kernel, slots, &roots, &mut |number, slots| {
             let at = At { instance, base: definition.base_of(number), side };
             self.condition(at, &frame.folds[number].filter.condition, slots)
         })
@@ -215,6 +216,13 @@ impl<'p> Truths<'_, 'p> {
     }
 }
 
+/// Some conditions, those first whose truth is at hand.
+fn cheap_first(all: &[Condition]) -> impl Iterator<Item = &Condition> {
+    let is_cheap = |condition: &Condition| matches!(condition, Condition::Constant(_) | Condition::Atom(_));
+    let cheap = all.iter().filter(move |condition| is_cheap(condition));
+    cheap.chain(all.iter().filter(move |condition| !is_cheap(condition)))
+}
+
 /// Whether a condition holds for the rows of the present instant, comparison by comparison (tests in actions, lets).
 /// `own` are the agents that `other` leaves out.
 pub fn test(
@@ -294,7 +302,7 @@ pub fn gather<'f>(
     slots: &Slots,
     own: &[usize],
 ) -> Vec<Folded<'f>> {
-    fold::gather(agents, frame, kernel, slots, own, &mut |number, slots| {
+    fold::gather(agents, (frame, None), kernel, slots, own, &mut |number, slots| {
         let filter = &frame.folds[number].filter;
         test_condition(agents, present, filter, frame, &filter.condition, slots, own)
     })

@@ -42,7 +42,7 @@ impl Engine<'_, '_> {
         loop {
             let from = self.present.time;
             if from > ENDLESS {
-                return Err(Reason::NeverEnds { time: from }.into());
+                return Err(Reason::NeverEnds { time: from, until: self.time_end }.into());
             }
             if self.has_fields() && self.neighbours.until <= from {
                 let span = self.neighbours.span;

@@ -177,10 +177,12 @@ impl SyntaxError {
                 Diagnostic::error("HY0103", format!("this `{bracket}` is never closed"))
                     .label(*open, "opened here")
                     .label(*missed, format!("`{}` is missing before {before}", partner(*bracket)))
+                    .help(format!("write `{}` where what it opens ends", partner(*bracket)))
             }
             Self::Unopened { span, bracket } => {
                 Diagnostic::error("HY0104", format!("this `{bracket}` closes nothing"))
                     .label(*span, format!("no `{}` is open here", partner(*bracket)))
+                    .help(format!("leave it out, or write `{}` where it should open", partner(*bracket)))
             }
             Self::UnknownCharacter { span, character } => {
                 let shown = character.escape_debug();

@@ -8,7 +8,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// A ball that bounces until t = 4 s.
-const BALL: &str = "\
+pub const BALL: &str = "\
 param g: real [m/s^2] = 9.81
 agent Ball(h: real [m] = 1) {
   state x: real [m] = h, v: real [m/s] = 0
@@ -21,7 +21,7 @@ run { until 1  tolerance 1e-8  record ball every 0.25 to \"ball.csv\"  events to
 ";
 
 /// A folder with files in it.
-fn folder(files: &[(&str, &str)]) -> TempDir {
+pub fn folder(files: &[(&str, &str)]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {
         fs::write(folder.path().join(name), text).unwrap();
@@ -30,10 +30,10 @@ fn folder(files: &[(&str, &str)]) -> TempDir {
 }
 
 /// What became of the program.
-struct Done {
-    code: i32,
-    out: String,
-    err: String,
+pub struct Done {
+    pub code: i32,
+    pub out: String,
+    pub err: String,
 }
 
 fn done(output: Output) -> Done {
@@ -47,20 +47,20 @@ fn command(folder: &Path, words: &[&str]) -> Command {
     command
 }
 
-fn hyc(folder: &TempDir, words: &[&str]) -> Done {
+pub fn hyc(folder: &TempDir, words: &[&str]) -> Done {
     done(command(folder.path(), words).output().unwrap())
 }
 
-fn read(folder: &TempDir, name: &str) -> String {
+pub fn read(folder: &TempDir, name: &str) -> String {
     fs::read_to_string(folder.path().join(name)).unwrap()
 }
 
-fn json(text: &str) -> Value {
+pub fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
 }
 
 #[track_caller]
-fn expect(done: &Done, code: i32, words: &[&str]) {
+pub fn expect(done: &Done, code: i32, words: &[&str]) {
     let said = format!("{}{}", done.out, done.err);
     assert_eq!(done.code, code, "{said}");
     for word in words {

@@ -243,3 +243,19 @@ fn circles_are_named() {
         assert!(message.contains("HY0207") || message.contains("HY0208"), "{text}: {message}");
     }
 }
+
+#[test]
+fn samples_of_a_record_are_limited() {
+    let recorded = |every: &str| {
+        format!(
+            "agent A {{ state x = 0  flow {{ x' = 1 }} }}  system {{ a = A() }}  run {{ until 1  record a every {every} to \"a.csv\" }}"
+        )
+    };
+    for every in ["1e-300", "5e-324", "1e-9"] {
+        says(&refused(&recorded(every)), &["HY0535", "more than 100000000 samples", "--limit max_samples=N"]);
+    }
+    let few = Limits { samples_max: 10, ..Limits::default() };
+    says(&checked(&recorded("0.09"), few).0, &["HY0535", "more than 10 samples"]);
+    assert_eq!(checked(&recorded("0.1"), few).0, "");
+    assert_eq!(checked(&recorded("1e-8"), Limits::default()).0, "");
+}

@@ -159,3 +159,20 @@ fn a_guard_may_be_one_of_all_members_of_an_aggregate_that_events_change() {
         assert_eq!((misses.missed, misses.late), (0, 0), "{algorithm:?}");
     }
 }
+
+#[test]
+fn what_is_never_negative_is_not_found_negative_within_a_tolerance() {
+    let model = "agent A { state x = 0, v = 1  discrete n: int = 0
+           flow { x' = v  v' = -x }
+           invariant x^2 >= 0
+           assert abs(x) >= 0 \"a distance\"
+           q: rate 0.5*x^2 when v > 0 { n := n + 1 } }
+         system { a = A() }
+         run { until 25  seed 4 }";
+    for algorithm in [masim(0.5), sasim()] {
+        let run = Case::new(model).algorithm(algorithm).run();
+        assert_eq!(run.time, 25.0);
+        assert!(run.false_asserts.is_empty());
+        assert!(run.events.len() > 3);
+    }
+}

@@ -113,10 +113,12 @@ fn what_cannot_be_drawn_is_refused_in_words() {
     let folder = folder.path();
     fs::write(folder.join("walk.hy"), MODEL).unwrap();
     fs::write(folder.join("other.csv"), "a,b\n1,2\n").unwrap();
+    fs::write(folder.join("table.parquet"), "PAR1").unwrap();
     fs::write(folder.join("bad.csv"), "time,agent,x\nsoon,a,2\n").unwrap();
     fine(folder, &["run", "walk.hy", "-q"]);
-    let cases: [(&[&str], &str); 6] = [
+    let cases: [(&[&str], &str); 7] = [
         (&["plot", "none.csv"], "cannot read `none.csv`"),
+        (&["plot", "table.parquet"], "cannot read `table.parquet`: only tables in CSV are drawn"),
         (&["plot", "other.csv"], "no columns `time` and `agent`"),
         (&["plot", "bad.csv"], "line 2: `soon` is no time"),
         (&["plot", "walk.csv", "--xy", "x,z"], "no column `z`; there are x; y"),

@@ -1,6 +1,6 @@
 //! Failures of constants, of the command line's values, of `system` with its data files, of `run`; and the limits.
 
-use super::with_similar;
+use super::{with_similar, with_similar_or};
 use crate::base::{Diagnostic, Span};
 
 /// What is wrong with a value from the command line.
@@ -69,6 +69,7 @@ impl From<ValueError> for Diagnostic {
             ValueError::BadCount { value, span } => {
                 Diagnostic::error("HY0265", "the size of an array must be a whole number from 0 on")
                     .label(span, format!("this is {value}"))
+                    .help("write a whole number, or say how it becomes whole: `round`, `floor` or `ceil`")
             }
             ValueError::NotADistribution { span } => Diagnostic::error(
                 "HY0278",
@@ -124,7 +125,11 @@ impl From<SystemError> for Diagnostic {
                 if is_let {
                     return unknown.help(format!("`{name}` is a `let`: it follows from other values"));
                 }
-                with_similar(unknown, &similar)
+                with_similar_or(
+                    unknown,
+                    &similar,
+                    format!("declare `{name}` in `agent {agent}`, or leave it out here"),
+                )
             }
             SystemError::FollowsLink { name, span } => {
                 Diagnostic::error("HY0258", format!("`{name}` follows from its own expression"))
@@ -175,10 +180,11 @@ pub(in crate::model) enum TableError {
 impl From<TableError> for Diagnostic {
     fn from(error: TableError) -> Self {
         match error {
-            TableError::NoColumn { name, file, span, similar } => with_similar(
+            TableError::NoColumn { name, file, span, similar } => with_similar_or(
                 Diagnostic::error("HY0286", format!("`{file}` has no column `{name}`"))
                     .label(span, "in no place of its header line"),
                 &similar,
+                "columns are called what the first line of the file calls them",
             ),
             TableError::NoRows { span, used } => Diagnostic::error("HY0287", "a table without rows")
                 .label(span, "nothing follows")
@@ -234,6 +240,7 @@ impl From<FileError> for Diagnostic {
                     .label(used, "the data is used here");
                 match similar {
                     Some(similar) => unknown.help(format!("did you mean `{similar}`?")),
+                    None if name.contains([';', '\t']) => unknown.help("separate columns by commas"),
                     None => unknown.help(format!("a column that begins with `_` is passed over: `_{name}`")),
                 }
             }
@@ -259,6 +266,7 @@ impl From<FileError> for Diagnostic {
             FileError::BadCell { column, expected, found, span } => {
                 Diagnostic::error("HY0276", format!("column `{column}` needs {expected} in every row"))
                     .label(span, found)
+                    .help("write a value in every row; of what a column leaves out there is none")
             }
         }
     }
@@ -280,6 +288,8 @@ pub(in crate::model) enum LimitError {
     TableRows { most: usize, span: Span },
     /// More cells of one sample than the limit.
     Cells { most: usize, span: Span },
+    /// More samples of a record than the limit.
+    Samples { most: u64, span: Span },
     /// Constants that take too long.
     Steps { span: Span },
     /// Definitions that are looked up inside each other, many deep.
@@ -325,6 +335,11 @@ impl From<LimitError> for Diagnostic {
                     .label(span, "agents times variables")
                     .help(raise("max_cells"))
             }
+            LimitError::Samples { most, span } => {
+                Diagnostic::error("HY0535", format!("a record of more than {most} samples"))
+                    .label(span, "so many of this length up to the end of the run")
+                    .help(format!("write a longer time behind `every`; {}", raise("max_samples")))
+            }
             LimitError::Steps { span } => {
                 Diagnostic::error("HY0292", "the constants of this model take too long to work out")
                     .label(span, "gave up here")
@@ -365,10 +380,11 @@ pub(in crate::model) enum RunError {
 impl From<RunError> for Diagnostic {
     fn from(error: RunError) -> Self {
         match error {
-            RunError::Unknown { name, span, similar } => with_similar(
+            RunError::Unknown { name, span, similar } => with_similar_or(
                 Diagnostic::error("HY0280", format!("`run` has no setting `{name}`"))
                     .label(span, "not known"),
                 &similar,
+                "among the settings are `until`, `tolerance`, `seed`, `record` and `events`",
             ),
             RunError::StepSize { name, span } => {
                 Diagnostic::error("HY0280", format!("a model contains no step size, and so no `{name}`"))

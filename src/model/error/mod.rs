@@ -39,6 +39,11 @@ impl From<Unsupported> for Diagnostic {
     }
 }
 
+/// The same; where nothing is like it, what else to do.
+fn with_similar_or(diagnostic: Diagnostic, similar: &Option<String>, help: impl Into<String>) -> Diagnostic {
+    if similar.is_some() { with_similar(diagnostic, similar) } else { diagnostic.help(help) }
+}
+
 /// "did you mean", as a help.
 fn with_similar(diagnostic: Diagnostic, similar: &Option<String>) -> Diagnostic {
     match similar {

@@ -1,6 +1,6 @@
 //! Failures of names: unknown, taken, circular, or out of place.
 
-use super::with_similar;
+use super::{with_similar, with_similar_or};
 use crate::base::{Diagnostic, Span};
 
 /// A name that cannot be used as it is.
@@ -34,15 +34,22 @@ pub(in crate::model) enum NameError {
 impl From<NameError> for Diagnostic {
     fn from(error: NameError) -> Self {
         match error {
-            NameError::Unknown { what, name, span, similar } => with_similar(
+            NameError::Unknown { what, name, span, similar } => with_similar_or(
                 Diagnostic::error("HY0201", format!("there is no {what} `{name}`"))
                     .label(span, "not known here"),
                 &similar,
+                format!(
+                    "declare `{name}`, or look where it is declared: what stands in an agent is known there only"
+                ),
             ),
             NameError::UnknownType { name, span, similar } => {
                 let unknown = Diagnostic::error("HY0202", format!("there is no type `{name}`"))
                     .label(span, "neither `real`, `int`, `bool` nor an agent type");
-                with_similar(unknown, &similar)
+                with_similar_or(
+                    unknown,
+                    &similar,
+                    format!("declare `agent {name} {{ }}`, or import the file that does"),
+                )
             }
             NameError::NoMember { name, agent, span, similar, mode } => {
                 let title = format!("agent `{agent}` has no `{name}`");
@@ -51,13 +58,16 @@ impl From<NameError> for Diagnostic {
                     Some(mode) => missing.help(format!(
                         "`{name}` is declared inside mode `{mode}`; declare it outside the modes to read it here"
                     )),
-                    None => with_similar(missing, &similar),
+                    None => {
+                        with_similar_or(missing, &similar, format!("declare `{name}` in `agent {agent}`"))
+                    }
                 }
             }
-            NameError::UnknownMode { name, inside, span, similar } => with_similar(
+            NameError::UnknownMode { name, inside, span, similar } => with_similar_or(
                 Diagnostic::error("HY0204", format!("{inside} has no mode `{name}`"))
                     .label(span, "no such mode"),
                 &similar,
+                format!("declare `mode {name} {{ }}` there"),
             ),
             NameError::Taken { name, span, first } => {
                 Diagnostic::error("HY0205", format!("`{name}` is declared twice"))

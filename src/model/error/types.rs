@@ -1,6 +1,6 @@
 //! Failures of types and units.
 
-use super::with_similar;
+use super::with_similar_or;
 use crate::base::{Diagnostic, Span};
 use crate::model::units::UnitProblem;
 
@@ -14,6 +14,8 @@ pub(in crate::model) enum TypeError {
     NotACondition { found: String, span: Span },
     /// An operator or a function cannot take this operand.
     Operand { operator: String, needs: &'static str, found: String, span: Span },
+    /// `[ ]` behind something that is neither a number nor a type, with a unit in it.
+    UnitBehind { unit: String, base: Span, span: Span },
     /// `==` between numbers that change continuously.
     EqualReals { span: Span, left: String, right: String },
     /// A declaration of a type that cannot be there.
@@ -56,6 +58,13 @@ impl From<TypeError> for Diagnostic {
                 Diagnostic::error("HY0223", format!("`{operator}` needs {needs}"))
                     .label(span, format!("this is {found}"))
             }
+            TypeError::UnitBehind { unit, base, span } => Diagnostic::error(
+                "HY0111",
+                format!("a unit cannot stand here: `[{unit}]` follows neither a number nor a type"),
+            )
+            .label(span, "unit")
+            .label(base, "this is neither a number nor a type")
+            .help("give the unit where the name is declared, or to a number: `1 [m]*x`"),
             TypeError::EqualReals { span, left, right } => {
                 let short = left.len() + right.len() <= 60 && !left.contains('\n') && !right.contains('\n');
                 let simple = right.chars().all(|c| c.is_alphanumeric() || matches!(c, '.' | '_'));
@@ -97,9 +106,10 @@ impl From<TypeError> for Diagnostic {
 /// `span` covers the brackets too; the problem's range counts from the first byte after the opening one.
 fn unit(problem: UnitProblem, span: Span) -> Diagnostic {
     match problem {
-        UnitProblem::Unknown { name, similar, .. } => with_similar(
+        UnitProblem::Unknown { name, similar, .. } => with_similar_or(
             Diagnostic::error("HY0228", format!("there is no unit `{name}`")).label(span, "not known"),
             &similar,
+            "units are those of SI, with prefixes: m, mm, kg, s, N, kW, and a few others: min, h, deg",
         ),
         UnitProblem::Offset { name, .. } => {
             Diagnostic::error("HY0228", format!("`{name}` is not a unit here: its zero is not absolute zero"))

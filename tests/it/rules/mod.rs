@@ -16,6 +16,7 @@ mod rule_07_reset;
 mod rule_08_claims;
 mod rule_09_events;
 mod rule_10_lives;
+mod rule_10_crowds;
 mod rule_10_named_sets;
 mod rule_11_time;
 mod rule_11_rate;

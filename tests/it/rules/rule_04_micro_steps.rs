@@ -1,6 +1,9 @@
 //! Rule 4: what happens in one instant, and in which order.
 
-use crate::harness::{Case, all_near, near, refused, simulate, simulate_error, simulate_to_the_end, words};
+use crate::harness::{
+    Case, all_near, near, refused, simulate, simulate_by_both_forms, simulate_error, simulate_to_the_end,
+    words,
+};
 use hyc::runtime::limits::Limits;
 
 #[test]
@@ -344,4 +347,27 @@ fn rule_04_agents_that_share_nothing_keep_their_instants_whatever_the_tolerance(
          run { until 2  event_tolerance 0.1 }",
     );
     all_near(&run.event_times(), &[1.0 / 1.0005, 1.0], 1e-12);
+}
+
+#[test]
+fn rule_04_destroying_whom_a_link_does_not_lead_to_is_no_write() {
+    let run = simulate_by_both_forms(
+        "agent A { link l: A  discrete n: int = 0
+           t: after 1 { destroy l  n := 1 } }
+         system { a = A[3]() }
+         run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 A.t a[0]", "0 A.t a[1]", "0 A.t a[2]"]);
+}
+
+#[test]
+fn rule_04_destroying_whom_two_links_lead_to_is_a_write_of_both() {
+    let run = simulate_by_both_forms(
+        "agent B { }
+         agent A { link l: B  discrete n: int = 0
+           t: after 1 { destroy l  n := 1 } }
+         system { b = B()  a = A[2](l = b) }
+         run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 A.t a[0]", "1 A.t a[1]"]);
 }

@@ -369,3 +369,20 @@ fn rule_09_a_message_wakes_an_agent_that_runs_ahead() {
     assert_eq!(run.times("B.hear").len(), 53);
     assert!(run.times("B.far").len() > 10);
 }
+
+#[test]
+fn rule_09_a_message_passed_over_keeps_its_turn_though_nothing_hears_it_there() {
+    // the first message is passed over for `go`; its turn goes on where nothing hears it, and the others come after
+    let run = simulate_by_both_forms(
+        "agent S { event q(v: int)
+           t: after 1 { emit q(1) after 1  emit q(2) after 1  emit q(3) after 1 } }
+         agent A { discrete c: int = 0
+           go: after 2 priority 1 -> M1
+           initial mode M0 { h0: on q(v) { c := 10*c + v } }
+           mode M1 { back: when true -> M0 } }
+         system { a = A()  s = S() }
+         run { until 3 }",
+    );
+    assert_eq!(run.log(), ["0 S.t s", "0 A.go a M0->M1", "1 A.back a M1->M0", "2 A.h0 a s", "3 A.h0 a s"]);
+    assert_eq!(run.value("a.c"), 23.0);
+}

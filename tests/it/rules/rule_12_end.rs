@@ -133,6 +133,15 @@ fn rule_12_a_stop_ends_at_its_instant() {
 }
 
 #[test]
+fn rule_12_an_end_beyond_what_can_be_followed_says_so() {
+    let (_, found) =
+        simulate_error("agent A { state x = 0  flow { x' = 1 } }  system { a = A() }  run { until 1e300 }");
+    assert_eq!(found.code, "HY0511");
+    let told = words(&[found]);
+    assert!(told.contains("longer than it can be followed") && told.contains("smaller `until`"), "{told}");
+}
+
+#[test]
 fn rule_12_an_instant_in_which_births_never_end_is_an_error() {
     let (_, error) = simulate_error(
         "agent P(v: real) { state x = 0  discrete n: int = 0  flow { x' = v } }
