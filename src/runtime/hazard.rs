@@ -110,7 +110,7 @@ impl Engine<'_, '_> {
         state.arming += 1;
         if hazard > 0.0 {
             state.periods += 1;
-            let (draw, version) = (u64::from(state.periods), state.arming);
+            let (draw, version) = (state.periods, state.arming);
             let [first, second] = [0, 1].map(|which| self.guards.roots(instance)[which]);
             let variable = format!("{} {}", transition.label, self.agents.draw_path(second));
             let agent = self.agents.draw_path(first);
