@@ -319,10 +319,16 @@ fn trigger(
     };
     Ok(match trigger {
         &ir::Trigger::When(condition) => Trigger::When(guard(draft, scope, condition)?),
-        ir::Trigger::Rate { guard: condition, .. } => {
+        ir::Trigger::Rate { rate, guard: condition, .. } => {
             let ty = scope.frame.slots[0].ty();
-            let labels = &draft.types[ty].hazards;
-            let hazard = labels.iter().position(|known| known == label).expect("every rate has a hazard");
+            let hazard = draft.types[ty].hazards.iter().position(|known| known == label);
+            let Some(hazard) = hazard else {
+                // No agent has a state for the hazard of a pair.
+                return Ok(Trigger::Chance {
+                    rate: number(draft, scope, *rate, &format!("{label} rate"))?,
+                    guard: condition.map(|condition| guard(draft, scope, condition)).transpose()?,
+                });
+            };
             Trigger::Rate {
                 hazard,
                 stream: draft.stream(ty, label),

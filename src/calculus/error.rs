@@ -39,11 +39,9 @@ impl Error {
     pub fn diagnostic(self) -> Diagnostic {
         match self {
             Error::QuantifierInNumber { span } => {
-                Diagnostic::error("HY0301", "a quantifier inside a number is not supported yet")
+                Diagnostic::error("HY0301", "a quantifier is no truth value that a number could be made of")
                     .label(span, "true or false for a whole set of agents")
-                    .help(
-                        "use it in a guard, in an `if` of actions, or assign it to a `discrete` of type bool",
-                    )
+                    .help("count: `(count o in Car where ...) >= 1`, or put it into the `if` itself")
             }
             Error::EventNegated { word, span } => {
                 Diagnostic::error("HY0302", format!("`{word}` cannot be negated"))

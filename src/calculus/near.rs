@@ -78,7 +78,9 @@ fn guard_of(trigger: &mut Trigger) -> Option<&mut Guard> {
     match trigger {
         Trigger::When(guard) => Some(guard),
         Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_mut(),
-        Trigger::On { guard, .. } | Trigger::Rate { guard, .. } => guard.as_mut(),
+        Trigger::On { guard, .. } | Trigger::Rate { guard, .. } | Trigger::Chance { guard, .. } => {
+            guard.as_mut()
+        }
     }
 }
 

@@ -88,7 +88,9 @@ impl<'a> Former<'a> {
     fn transition(&mut self, transition: &TransitionSystem) -> FormId {
         let mut parts = match &transition.trigger {
             Trigger::When(guard) => vec![self.guard(guard)],
-            Trigger::After { delay: time, guard } | Trigger::Every { period: time, guard } => {
+            Trigger::After { delay: time, guard }
+            | Trigger::Every { period: time, guard }
+            | Trigger::Chance { rate: time, guard } => {
                 let mut parts = vec![self.function(*time)];
                 parts.extend(guard.as_ref().map(|guard| self.guard(guard)));
                 parts

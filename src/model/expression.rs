@@ -310,6 +310,7 @@ impl<'a> Context<'a> {
             }
         };
         let ty = if condition.ty == Ty::Wrong { Ty::Wrong } else { ty };
+        let condition = if ty == Ty::Bool { condition } else { self.counted(condition) };
         self.apply(Op::Select, [condition.id, yes.id, no.id], ty, span)
     }
 

@@ -175,6 +175,63 @@ impl<'a> Context<'a> {
         Value { ty: Ty::Wrong, ..value }
     }
 
+    /// A condition that chooses between numbers: in a number a quantifier counts, how many there are or how many are otherwise.
+    pub fn counted(&mut self, condition: Value) -> Value {
+        // A chain of `and` or `or`, however long, is a loop.
+        let (mut rest, mut first) = (Vec::new(), condition);
+        while let ExprKind::Apply(op @ (Op::And | Op::Or), operands) = &self.model.exprs[first.id].kind
+            && self.facts[first.id.index()].quantified
+        {
+            let [left, right] = [0, 1].map(|k| Value { id: operands[k], ty: condition.ty });
+            rest.push((*op, right, self.model.exprs[first.id].span));
+            first = left;
+        }
+        let mut all = self.counted_part(first);
+        for (op, right, span) in rest.into_iter().rev() {
+            let right = self.counted(right);
+            all = self.apply(op, [all.id, right.id], condition.ty, span);
+        }
+        all
+    }
+
+    fn counted_part(&mut self, part: Value) -> Value {
+        if !self.facts[part.id.index()].quantified {
+            return part;
+        }
+        let span = self.model.exprs[part.id].span;
+        match self.model.exprs[part.id].kind.clone() {
+            ExprKind::Apply(op @ (Op::Not | Op::Select), operands) => {
+                let all: Vec<ExprId> =
+                    operands.iter().map(|&id| self.counted(Value { id, ty: part.ty }).id).collect();
+                match all[..] {
+                    [operand] => self.apply(op, [operand], part.ty, span),
+                    [test, yes, no] => self.apply(op, [test, yes, no], part.ty, span),
+                    _ => part,
+                }
+            }
+            ExprKind::Quantifier { kind, binder, set, other, filter, body } => {
+                let body = match kind {
+                    Quantifier::Exists => body,
+                    Quantifier::Forall => self.apply(Op::Not, [body], Ty::Bool, span).id,
+                };
+                let filter = match filter {
+                    Some(filter) => self.apply(Op::And, [filter, body], Ty::Bool, span).id,
+                    None => body,
+                };
+                let (kind_of, filter) = (Aggregate::Count, Some(filter));
+                let count = ExprKind::Aggregate { kind: kind_of, binder, set, other, filter, term: None };
+                let count = self.push(count, Ty::Int, span);
+                let half = self.number(0.5, Ty::Real, span);
+                let operands = match kind {
+                    Quantifier::Exists => [half.id, count.id],
+                    Quantifier::Forall => [count.id, half.id],
+                };
+                self.apply(Op::Lt, operands, Ty::Bool, span)
+            }
+            _ => part,
+        }
+    }
+
     pub fn no_body(&mut self, quantifier: &str, needs: &'static str, span: Span) -> Value {
         let (operator, found) = (quantifier.to_string(), "all of it".to_string());
         self.report(TypeError::Operand { operator, needs, found, span });

@@ -5,7 +5,7 @@
 //! source of one that stands outside the modes is written `*`: `Car.*->Avoid`, `Car.*#1`; that of an interaction too.
 //! A second one of the same name gets `#2` behind it.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::actions::Written;
 use super::context::{Context, Home, Scope, Value};
@@ -13,6 +13,7 @@ use super::dimension::Dimension;
 use super::error::{ActionError, InteractionError, ModeError, NameError, TypeError};
 use super::events::Heard;
 use super::ir::{BinderId, ExprId, ExprKind, ModeId, Transition, Trigger, TypeId};
+use super::operands::for_each_operand;
 use super::types::{Slot, Ty};
 use crate::base::Span;
 use crate::math::Op;
@@ -108,11 +109,7 @@ impl<'a> Context<'a> {
                 self.report(ActionError::ModeChange { span: target.span, why, help });
             }
             match item.trigger.kind {
-                TriggerKind::When | TriggerKind::After(_) | TriggerKind::Every(_) => {}
-                TriggerKind::Rate(_) => {
-                    self.refuse("`rate` transitions of interactions", item.trigger.span);
-                    continue;
-                }
+                TriggerKind::When | TriggerKind::After(_) | TriggerKind::Every(_) | TriggerKind::Rate(_) => {}
                 TriggerKind::On { .. } => {
                     self.report(InteractionError::Hears { span: item.trigger.span });
                     continue;
@@ -207,6 +204,9 @@ impl<'a> Context<'a> {
     fn hazard(&mut self, scope: &mut Scope<'a>, expr: &'a ast::Expr, guard: Option<ExprId>) -> Trigger {
         let per_time = Slot::of(Dimension::ONE).per_time();
         let rate = self.lower_into(scope, expr, per_time, "a rate");
+        if let (Home::Pair(_), Some(span)) = (scope.home, self.first_flowing(rate.id)) {
+            self.report(InteractionError::FlowingRate { rate: expr.span, span });
+        }
         let facts = self.facts[rate.id.index()];
         if rate.ty != Ty::Wrong
             && facts.closed
@@ -222,6 +222,26 @@ impl<'a> Context<'a> {
             claim = self.apply(Op::Or, [not, claim], Ty::Bool, expr.span).id;
         }
         Trigger::Rate { rate: rate.id, guard, claim }
+    }
+
+    /// The first part of an expression that may change while nothing is written: a state, the time, a set; none if there is none.
+    fn first_flowing(&self, root: ExprId) -> Option<Span> {
+        let (mut pending, mut seen) = (vec![root], FxHashSet::default());
+        while let Some(id) = pending.pop() {
+            if !seen.insert(id) {
+                continue;
+            }
+            let expr = &self.model.exprs[id];
+            match expr.kind {
+                ExprKind::State(..) | ExprKind::Rate(..) | ExprKind::Time => return Some(expr.span),
+                ExprKind::Quantifier { .. } | ExprKind::Aggregate { .. } => return Some(expr.span),
+                ExprKind::Let(agent, number) => pending.extend(self.let_value(agent, number)),
+                ExprKind::Call(function, _) => pending.push(self.model.functions[function].body),
+                _ => {}
+            }
+            for_each_operand(&expr.kind, |operand| pending.push(operand));
+        }
+        None
     }
 
     /// A guard. An `exists` that is all of it, or a term of its outermost `and`, gives its agent to the actions.

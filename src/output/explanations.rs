@@ -114,6 +114,7 @@ fn because(cast: &Cast, cause: &Cause) -> String {
         Cause::Entry => "its guard was true on entry:".into(),
         Cause::After { delay } => format!("its delay of {} s was over", number_text(*delay)),
         Cause::Every { period } => format!("its period of {} s had passed", number_text(*period)),
+        Cause::Chance => "the time drawn for the two had come:".into(),
         Cause::Message { sender } => format!("a message from {} came", cast.agent(*sender)),
         Cause::Write { by } => {
             let by = by.iter().map(|label| format!("`{label}`")).collect::<Vec<_>>().join(", ");

@@ -95,6 +95,11 @@ impl<'p> Engine<'p, '_> {
         let Some(transition) = self.guards.definition(instance).origin.transition() else { return Ok(()) };
         let (function, least) = match &transition.trigger {
             Trigger::When(_) | Trigger::Rate { .. } | Trigger::On { .. } => return Ok(()),
+            Trigger::Chance { .. } => {
+                // Nothing has been drawn.
+                self.guards.instances[instance as usize].delay = f64::NAN;
+                return Ok(());
+            }
             Trigger::After { delay, .. } => (*delay, 0.0),
             Trigger::Every { period, .. } => (*period, f64::MIN_POSITIVE),
         };
@@ -492,7 +497,7 @@ impl<'p> Engine<'p, '_> {
         }
         let Some(transition) = self.guards.definition(instance).origin.transition() else { return false };
         match &transition.trigger {
-            Trigger::Every { .. } | Trigger::On { .. } => false,
+            Trigger::Every { .. } | Trigger::On { .. } | Trigger::Chance { .. } => false,
             Trigger::After { .. } => state.aged && self.truths().holds_now(instance),
             Trigger::When(_) | Trigger::Rate { .. } => self.truths().holds_now(instance),
         }

@@ -184,7 +184,9 @@ fn may_be_listed(definition: &Definition<'_>) -> bool {
 pub fn guard_of(transition: &TransitionSystem) -> Option<&Guard> {
     match &transition.trigger {
         Trigger::When(guard) => Some(guard),
-        Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
+        Trigger::After { guard, .. } | Trigger::Every { guard, .. } | Trigger::Chance { guard, .. } => {
+            guard.as_ref()
+        }
         Trigger::Rate { due, .. } => Some(due),
         // Asked when a message comes, and not followed.
         Trigger::On { .. } => None,
@@ -195,7 +197,8 @@ pub fn guard_of(transition: &TransitionSystem) -> Option<&Guard> {
 pub fn gate_of(transition: &TransitionSystem) -> Option<&Guard> {
     match &transition.trigger {
         Trigger::Rate { guard, .. } => guard.as_ref(),
-        Trigger::When(_) | Trigger::After { .. } | Trigger::Every { .. } | Trigger::On { .. } => None,
+        Trigger::When(_) | Trigger::After { .. } | Trigger::Every { .. } => None,
+        Trigger::Chance { .. } | Trigger::On { .. } => None,
     }
 }
 

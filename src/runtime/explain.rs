@@ -78,6 +78,7 @@ impl Engine<'_, '_> {
         let is_scheduled = |due: f64| (due - time).abs() <= 4.0 * ulp(time);
         match candidate.by {
             By::Guard => {}
+            By::Pulse(_) if self.is_gated(instance) => return (Cause::Chance, Before::Nothing),
             By::Pulse(_) => return (Cause::Every { period: state.delay }, Before::Nothing),
             By::Message => {
                 let sender = self.mail.sender_at(state.roots[0] as usize);

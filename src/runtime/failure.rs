@@ -236,6 +236,19 @@ pub enum Reason {
         /// The transition.
         span: Span,
     },
+    /// A hazard of a pair that is no number from 0 on.
+    BadHazard {
+        /// Where.
+        place: Place,
+        /// Of which transition.
+        label: String,
+        /// Its value, 1/s.
+        hazard: f64,
+        /// What made it so, if it is not finite.
+        blame: Option<Blame>,
+        /// The transition.
+        span: Span,
+    },
     /// A hazard that is negative.
     NegativeRate {
         /// Where.
@@ -365,6 +378,13 @@ impl Reason {
                 place
                     .add_to(with_blame(diagnostic, blame.as_ref()))
                     .help("a delay must be finite and at least 0, a period finite and at least 1e-12 s")
+            }
+            Reason::BadHazard { place, label, hazard, blame, span } => {
+                let title = format!("the rate of `{label}` became {hazard}");
+                let diagnostic = Diagnostic::error("HY0514", title).label(*span, "this transition");
+                place
+                    .add_to(with_blame(diagnostic, blame.as_ref()))
+                    .help("a rate is a number from 0 on: say when it counts, `rate ... when ...`, or clamp it: `max(..., 0)`")
             }
             Reason::NegativeRate { place, label, compared, span } => {
                 let title = format!("the rate of `{label}` became negative");

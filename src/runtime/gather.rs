@@ -139,7 +139,7 @@ impl Engine<'_, '_> {
             }
             let origin = self.guards.definition(instance).origin;
             claims |= matches!(origin, Origin::Claim(_));
-            gates |= matches!(origin, Origin::Gate(_));
+            gates |= self.is_gated(instance);
         }
         candidates
             .retain(|candidate| candidate.by == By::Guard || self.truths().holds_now(candidate.instance));
@@ -256,6 +256,10 @@ impl Engine<'_, '_> {
         let transition = self.guards.definition(instance).origin.transition()?;
         let periodic = matches!(transition.trigger, Trigger::Every { .. });
         let state = &mut self.guards.instances[instance as usize];
+        if matches!(transition.trigger, Trigger::Chance { .. }) {
+            state.delay = f64::NAN;
+            return Some(Candidate { instance, by: By::Pulse(state.arming) });
+        }
         if !periodic {
             state.aged = true;
             return None;

@@ -3,14 +3,19 @@
 //! What is left begins with a number drawn from the exponential distribution of mean 1, and falls by the hazard while the gate
 //! is open; the transition fires when nothing is left. The gate is open while the transition's guard is true: a guard of its
 //! own, which changes the gate and nothing else.
+//!
+//! Of an interaction no agent has such a state. There the hazard is constant between writes, and a time is drawn: whenever the hazard
+//! changes, by its guard or by what it reads.
 
 use crate::codegen::program::{Distribution, Target, TransitionSystem, Trigger};
+use crate::math::draw::Key;
 use crate::runtime::act::{Effect, Write, Written};
 use crate::runtime::arm::Rule;
-use crate::runtime::engine::Engine;
-use crate::runtime::failure::Failure;
+use crate::runtime::engine::{Due, Engine};
+use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::guards::Origin;
-use crate::runtime::truth::Side;
+use crate::runtime::solve::scheduled;
+use crate::runtime::truth::{self, Side};
 
 impl Engine<'_, '_> {
     /// Draws what is left of the hazard of an instance that is being armed. Its agent has been restarted at this instant.
@@ -37,10 +42,21 @@ impl Engine<'_, '_> {
         effect.writes.push(Write { agent, target, value, span: transition.span });
     }
 
+    /// Whether an instance has a hazard that its guard takes away: a gate, or a chance.
+    pub fn is_gated(&self, instance: u32) -> bool {
+        let definition = self.guards.definition(instance);
+        matches!(definition.origin, Origin::Gate(_))
+            || matches!(definition.trigger(), Some(Trigger::Chance { .. }))
+    }
+
     /// Opens and closes the gates among some instances by the truths of their conditions just after the instant.
     pub fn set_gates(&mut self, instances: &[u32]) -> Result<(), Failure> {
         let mut written = Written::default();
         for &instance in instances {
+            if let Origin::Pair(pair) = self.guards.definition(instance).origin {
+                self.set_chance(instance, &pair.transition)?;
+                continue;
+            }
             let Origin::Gate(transition) = self.guards.definition(instance).origin else { continue };
             let Trigger::Rate { hazard, .. } = transition.trigger else { continue };
             if !self.guards.instances[instance as usize].active {
@@ -60,6 +76,47 @@ impl Engine<'_, '_> {
         if !written.restarted.is_empty() {
             self.present.forget();
             self.wake(&written)?;
+        }
+        Ok(())
+    }
+
+    /// Draws when a pair fires, if its hazard is another one than just before: its guard has become true or false, its rate has been
+    /// written, or it has fired. (What is left of an exponential time is one again, so nothing has to be kept.)
+    fn set_chance(&mut self, instance: u32, transition: &TransitionSystem) -> Result<(), Failure> {
+        let Trigger::Chance { rate, .. } = transition.trigger else { return Ok(()) };
+        if !self.guards.instances[instance as usize].active {
+            return Ok(());
+        }
+        for index in self.guards.atoms_of(instance) {
+            self.settle(index, Rule::Rates, &Written::default());
+        }
+        let mut hazard = 0.0;
+        if self.truths().holds(instance, Side::After) {
+            let (slots, own) = (self.guards.slots(&self.agents, instance), self.guards.roots(instance));
+            let frame = &transition.frame;
+            hazard = truth::value(&self.agents, &mut self.present, rate, frame, &slots, &own);
+            if !(hazard >= 0.0 && hazard.is_finite()) {
+                let blame = self.blame(rate, frame, &slots, &own);
+                let (place, label) = (self.place(slots[0]), transition.label.clone());
+                return Err(Reason::BadHazard { place, label, hazard, blame, span: transition.span }.into());
+            }
+        }
+        let time = self.present.time;
+        let state = &mut self.guards.instances[instance as usize];
+        if state.delay == hazard {
+            return Ok(());
+        }
+        state.delay = hazard;
+        state.arming += 1;
+        if hazard > 0.0 {
+            state.periods += 1;
+            let (draw, version) = (state.periods, state.arming);
+            let [first, second] = [0, 1].map(|which| self.guards.roots(instance)[which]);
+            let variable = format!("{} {}", transition.label, self.agents.draw_path(second));
+            let agent = self.agents.draw_path(first);
+            let key = Key { seed: self.program.run.seed, agent: &agent, variable: &variable, draw };
+            let due = scheduled(time + Distribution::Exponential.draw(&[hazard], key), self.time_end);
+            self.queues.schedules.push(Due { time: due, number: instance, version });
         }
         Ok(())
     }

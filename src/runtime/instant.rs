@@ -250,7 +250,8 @@ impl Engine<'_, '_> {
         self.firings[definition] += 1;
         let trigger = self.guards.definition(instance).trigger();
         // Whoever emits is counted; that many emit at once is nothing to complain of.
-        let scheduled = matches!(trigger, Some(Trigger::Every { .. } | Trigger::On { .. }));
+        let scheduled =
+            matches!(trigger, Some(Trigger::Every { .. } | Trigger::Chance { .. } | Trigger::On { .. }));
         let time = self.present.time;
         let finding = self.repetitions.fired(instance, time, scheduled);
         if finding == Finding::Fine {

@@ -93,6 +93,8 @@ pub enum Cause {
         /// s.
         period: f64,
     },
+    /// The time that was drawn for a pair.
+    Chance,
     /// A message.
     Message {
         /// From whom.

@@ -1,6 +1,6 @@
 //! Do `count`, `sum`, `min` and `max` over agents change guards, lets and actions at the instants that can be worked out by hand?
 
-use crate::harness::{Case, Ended, all_near, near, refused, simulate, simulate_error};
+use crate::harness::{Case, Ended, all_near, near, refused, simulate, simulate_error, simulate_to_the_end};
 
 /// Four cars that start together and drive off at 1, 2, 3 and 4 m/s, with a transition `t`.
 #[track_caller]
@@ -449,4 +449,22 @@ fn a_sum_that_is_entered_on_its_boundary_moving_out_is_held() {
          run { until 3 }",
     );
     assert_eq!((run.mode("car"), run.value("car.n")), ("Down", 1.0));
+}
+
+#[test]
+fn rule_10_a_quantifier_chooses_between_numbers() {
+    let run = simulate_to_the_end(
+        "agent A(k: real) {
+           state x = k
+           discrete v = 0
+           flow { x' = 1 }
+           let near_ = if exists o in other A: o.x >= 4 then 1 else 0
+           let far = if not (forall o in other A where o.k < 5: o.x >= 2) or x < 0 then 0 else 10
+           both: when near_ + far >= 11 { v := if exists o in other A where o.x < x: o.x >= 2.5 then 2 else 1 }
+         }
+         system { a = A[3](k = index) }
+         run { until 5 }",
+    );
+    all_near(&[0, 1, 2].map(|k| run.times_of("A.both", &format!("a[{k}]"))[0]), &[2.0, 2.0, 3.0], 1e-12);
+    assert_eq!([0, 1, 2].map(|k| run.value(&format!("a[{k}].v"))), [1.0, 1.0, 2.0]);
 }

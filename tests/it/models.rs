@@ -21,6 +21,7 @@ mod flock;
 mod highway;
 mod interlock;
 mod convoy;
+mod join_split;
 mod metro;
 
 use crate::harness::{Case, Ended, near};

@@ -41,9 +41,8 @@ fn interaction(guard: &str) -> System {
 fn guard(trigger: &Trigger) -> &Guard {
     match trigger {
         Trigger::When(guard) => guard,
-        Trigger::After { .. } | Trigger::Every { .. } | Trigger::On { .. } | Trigger::Rate { .. } => {
-            panic!("it waits")
-        }
+        Trigger::After { .. } | Trigger::Every { .. } | Trigger::On { .. } => panic!("it waits"),
+        Trigger::Rate { .. } | Trigger::Chance { .. } => panic!("it waits"),
     }
 }
 

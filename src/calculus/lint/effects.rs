@@ -16,7 +16,9 @@ pub fn guard(transition: &TransitionSystem) -> Option<&Guard> {
     match &transition.trigger {
         Trigger::When(guard) => Some(guard),
         Trigger::After { guard, .. } | Trigger::Every { guard, .. } => guard.as_ref(),
-        Trigger::On { guard, .. } | Trigger::Rate { guard, .. } => guard.as_ref(),
+        Trigger::On { guard, .. } | Trigger::Rate { guard, .. } | Trigger::Chance { guard, .. } => {
+            guard.as_ref()
+        }
     }
 }
 
@@ -29,7 +31,8 @@ pub fn plain_guard(transition: &TransitionSystem) -> Option<&Guard> {
             };
             (guard.n_rising == 0 && !guard.atoms.iter().any(crosses)).then_some(guard)
         }
-        Trigger::After { .. } | Trigger::Every { .. } | Trigger::On { .. } | Trigger::Rate { .. } => None,
+        Trigger::After { .. } | Trigger::Every { .. } | Trigger::On { .. } => None,
+        Trigger::Rate { .. } | Trigger::Chance { .. } => None,
     }
 }
 

@@ -63,6 +63,14 @@ pub enum Trigger {
         /// Written to the gate of the hazard. None: true.
         guard: Option<Guard>,
     },
+    /// Of an interaction: after a time drawn from the exponential distribution of this rate (one output, 1/s, constant between
+    /// writes), drawn anew whenever the guard becomes true, the rate changes, or it has fired.
+    Chance {
+        /// 1/s.
+        rate: FunctionId,
+        /// None: true.
+        guard: Option<Guard>,
+    },
     /// By a message, if the guard holds at its turn.
     On {
         /// The events that it hears, by type and number.

@@ -7,6 +7,7 @@
 mod warning;
 mod unused;
 mod events;
+mod births;
 mod unreached;
 mod settled;
 mod repeated;
@@ -32,6 +33,8 @@ pub(super) fn lint(context: &mut Context) -> Vec<Diagnostic> {
     unused::members(context, &mut found);
     unused::bound(context, &mut found);
     events::idle(context, &mut found);
+    births::unset_links(context, &mut found);
+    births::endless(context, &mut found);
     unreached::modes(context, &mut found);
     lookalike::names(context, &mut found);
     beside::numbers(context, &mut found);

@@ -202,7 +202,9 @@ fn participants(model: &Model, interaction: &Interaction, formals: &[Formal], fo
         let mut moved = false;
         for transition in &interaction.transitions {
             roots.extend(guard(transition).into_iter().chain(transition.priority));
-            if let Trigger::After(time, _) | Trigger::Every(time, _) = transition.trigger {
+            if let Trigger::After(time, _) | Trigger::Every(time, _) | Trigger::Rate { rate: time, .. } =
+                transition.trigger
+            {
                 roots.push(time);
             }
             each_action(&transition.actions, &mut |action| match action {

@@ -12,6 +12,10 @@ pub(super) enum Warning {
     IdleEvent { name: String, agent: String, span: Span, emitted: bool, heard: bool },
     /// An agent type of which `system` makes no agent.
     NoAgents { name: String, span: Span },
+    /// A link that nothing sets.
+    NeverSet { name: String, agent: String, span: Span },
+    /// An agent that makes another one of its type as it begins.
+    EndlessBirths { agent: String, span: Span },
     /// A mode in which no agent ever is.
     Unreached { path: String, agent: String, span: Span },
     /// A condition without which the transition cannot fire, and which is never true.
@@ -58,6 +62,18 @@ impl From<Warning> for Diagnostic {
                 Diagnostic::warning("HY0603", format!("there are no agents of type `{name}`"))
                     .label(span, "`system` makes none of these")
                     .help(format!("make one in `system`, or call the type `_{name}`"))
+            }
+            Warning::NeverSet { name, agent, span } => {
+                Diagnostic::warning("HY0622", format!("the link `{name}` is never set, and so always none"))
+                    .label(span, format!("no constructor of `{agent}` gives it, and it has no expression"))
+                    .help(format!(
+                        "give it one, `{agent}({name} = ...)`, or an expression: `link {name} = nearest ...`"
+                    ))
+            }
+            Warning::EndlessBirths { agent, span } => {
+                Diagnostic::warning("HY0623", format!("every `{agent}` makes another `{agent}` as it begins"))
+                    .label(span, "without end, at one instant")
+                    .help("make it in a transition, or say by `if` who makes one")
             }
             Warning::Unreached { path, agent, span } => {
                 Diagnostic::warning("HY0604", format!("no `{agent}` is ever in mode `{path}`"))

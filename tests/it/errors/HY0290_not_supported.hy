@@ -1,2 +1,3 @@
-agent A { state x = 0  flow { x' = 1 } }
-interaction Touch(a: A, b: A) { rate 2 [1/s] { a.x := 0 } }
+agent A { state x = 0  flow { x' = sum o in other A: o.x }  after 1 { create A() } }
+system { a = A() }
+run { until 2 }

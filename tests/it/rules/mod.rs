@@ -20,6 +20,7 @@ mod rule_10_crowds;
 mod rule_10_named_sets;
 mod rule_11_time;
 mod rule_11_rate;
+mod rule_11_pairs;
 mod rule_12_end;
 mod rule_13_coupling;
 mod rule_13_sets;
