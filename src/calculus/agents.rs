@@ -198,10 +198,16 @@ fn claim(
 /// The violation of a claim that something is not negative: it cannot be, if what is compared is a square, or the like. An
 /// algorithm that finds zeros within a tolerance need not look for it.
 fn without_the_impossible(draft: &Draft, violation: Guard) -> Guard {
-    let Condition::Atom(number) = violation.condition else { return violation };
-    let atom = &violation.atoms[number];
-    let impossible = atom.relation == Relation::Negative
-        && is_never_negative(&draft.graph, draft.functions[atom.value].outputs[0]);
+    let is_impossible = |condition: &Condition| {
+        let Condition::Atom(number) = condition else { return false };
+        let atom = &violation.atoms[*number];
+        atom.relation == Relation::Negative
+            && is_never_negative(&draft.graph, draft.functions[atom.value].outputs[0])
+    };
+    let impossible = match &violation.condition {
+        Condition::And(all) => all.iter().any(is_impossible),
+        one => is_impossible(one),
+    };
     if !impossible {
         return violation;
     }

@@ -37,7 +37,7 @@ impl Default for Limits {
             configurations_max: 1_000,
             table_rows_max: 1_000,
             cells_max: 10_000_000,
-            samples_max: 100_000_000,
+            samples_max: 1_000_000_000_000,
             evaluations_max: 50_000_000,
             operations_max: 200_000_000,
         }

@@ -251,8 +251,11 @@ fn samples_of_a_record_are_limited() {
             "agent A {{ state x = 0  flow {{ x' = 1 }} }}  system {{ a = A() }}  run {{ until 1  record a every {every} to \"a.csv\" }}"
         )
     };
-    for every in ["1e-300", "5e-324", "1e-9"] {
-        says(&refused(&recorded(every)), &["HY0535", "more than 100000000 samples", "--limit max_samples=N"]);
+    for every in ["1e-300", "5e-324", "1e-13"] {
+        says(
+            &refused(&recorded(every)),
+            &["HY0535", "more than 1000000000000 samples", "--limit max_samples=N"],
+        );
     }
     let few = Limits { samples_max: 10, ..Limits::default() };
     says(&checked(&recorded("0.09"), few).0, &["HY0535", "more than 10 samples"]);
