@@ -182,12 +182,7 @@ fn claim(
     let violation = match kind {
         ClaimKind::Property => guard::margins(draft, &mut scope, claim.condition, &name)?,
         ClaimKind::Invariant | ClaimKind::Assert | ClaimKind::Rate => {
-            guard::guard(draft, &mut scope, claim.condition, Sense::Negative, &name)?
-        }
-    };
-    let violation = match kind {
-        ClaimKind::Property => violation,
-        ClaimKind::Invariant | ClaimKind::Assert | ClaimKind::Rate => {
+            let violation = guard::guard(draft, &mut scope, claim.condition, Sense::Negative, &name)?;
             without_the_impossible(draft, violation)
         }
     };

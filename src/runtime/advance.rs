@@ -16,8 +16,7 @@ use crate::runtime::limits::Limits;
 use crate::runtime::population::{Agent, Agents, Slots};
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::integrate::{Integrator, Stuck};
-use crate::runtime::solve::method::Flow as _;
-use crate::runtime::solve::method::Stretch;
+use crate::runtime::solve::method::{Flow as _, Stretch};
 use crate::runtime::solve::roots::{Curve, Known, Search, first_flip};
 use crate::runtime::solve::switch::{Regime, Switch};
 use crate::runtime::solve::{MethodName, Methods, time_resolution};
@@ -402,7 +401,7 @@ impl Stepper {
             Stuck::NonFinite => self.undefined(agents, group),
             Stuck::Underflow => {
                 let error = &self.integrator.trial.error;
-                let scale = |i: usize| self.accuracy.absolute + self.accuracy.tolerance * self.x[i].abs();
+                let scale = |i: usize| self.accuracy.allowed(self.x[i].abs());
                 let share = |i: usize| error[i].abs() / scale(i);
                 let worst = (0..self.x.len()).max_by(|&i, &j| share(i).total_cmp(&share(j)));
                 let (agent, state) = member(agents, group, worst.unwrap_or(0));

@@ -66,8 +66,7 @@ impl<'p> Engine<'p, '_> {
 
     /// Whether an instance fires when nothing is left of a hazard.
     pub fn is_hazard(&self, instance: u32) -> bool {
-        let transition = self.guards.definition(instance).origin.transition();
-        transition.is_some_and(|transition| matches!(transition.trigger, Trigger::Rate { .. }))
+        matches!(self.guards.definition(instance).trigger(), Some(Trigger::Rate { .. }))
     }
 
     /// Takes an instance out, whose mode has just been left.
@@ -164,11 +163,11 @@ impl<'p> Engine<'p, '_> {
             let rounding = if atom.smooth { self.rounding(kernel, &slots, &folds) } else { 0.0 };
             let clear = g.abs() > if unchanged { before.slack.max(rounding) } else { rounding };
             let along = if unchanged { before.truth } else { closed(atom.relation, before.truth) };
-            let is_hazard = self.is_hazard(before.instance);
+            let is_hazard = rule == Rule::Rates && self.is_hazard(before.instance);
             let mut decide = || self.decide(index, (g, rounding), along, &slots, &folds);
             match rule {
                 // What is left of a hazard is as likely to be next to nothing as anything else.
-                Rule::Rates if is_hazard => g < 0.0,
+                _ if is_hazard => g < 0.0,
                 Rule::Rates => decide(),
                 Rule::Woken if unchanged && clear => before.truth,
                 Rule::Fresh | Rule::Woken if clear => g < 0.0,

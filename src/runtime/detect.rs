@@ -199,12 +199,11 @@ impl Curve for AtomCurve<'_, '_> {
     }
 
     fn turns(&mut self, t: f64) -> bool {
-        let Some(turns) = self.atom.turns.filter(|_| self.folds.is_empty()) else { return false };
+        if self.atom.turns.is_none() || !self.folds.is_empty() {
+            return false;
+        }
         self.fill_boxes(t, t);
-        let mut out: SmallVec<[Interval; 4]> =
-            smallvec![Interval::WHOLE; self.agents.program.kernel(turns).n_outputs()];
-        self.evaluate(turns, Interval { lo: t, hi: t }, &mut out);
-        out.iter().any(|turn| turn.mig() <= AT_TURN)
+        self.any_turn(Interval { lo: t, hi: t }, |turn| turn.mig() <= AT_TURN)
     }
 
     fn given_up(&self) -> bool {
@@ -298,11 +297,16 @@ impl AtomCurve<'_, '_> {
 
     /// Whether the rate of g may jump on the boxes.
     fn may_turn(&mut self, time: Interval) -> bool {
+        self.any_turn(time, |turn| turn.lo <= 0.0 && turn.hi >= 0.0)
+    }
+
+    /// Whether something that is zero where the rate of g may jump is so, on the boxes.
+    fn any_turn(&mut self, time: Interval, is_so: impl Fn(&Interval) -> bool) -> bool {
         let Some(turns) = self.atom.turns else { return false };
         let mut out: SmallVec<[Interval; 4]> =
             smallvec![Interval::WHOLE; self.agents.program.kernel(turns).n_outputs()];
         self.evaluate(turns, time, &mut out);
-        out.iter().any(|turn| turn.lo <= 0.0 && turn.hi >= 0.0)
+        out.iter().any(is_so)
     }
 
     /// Bounds for an affine g, which is a polynomial on the segments: from its terms about the middle of [s, e].

@@ -59,6 +59,14 @@ impl<T: Numbers> LeapRows<T> {
             highs: vec![zero; leaps.tape.n_states],
         }
     }
+
+    /// The rates are the first coefficients of a series of order 1.
+    #[inline(always)]
+    fn take_rates(&mut self) {
+        for (end, row) in self.ends.iter_mut().zip(self.rates.chunks_exact(2)) {
+            *end = row[1];
+        }
+    }
 }
 
 /// What a step comes to.
@@ -84,9 +92,7 @@ impl Leaps<'_> {
         let end = t.zip(h, |t, h| if h == stop - t { stop } else { t + h });
         sum_up(&rows.coefficients, order, h, &mut rows.terms, x_new);
         T::expand(self.tape, end, x_new, &rows.fixed, 1, &mut rows.rates);
-        for (end, row) in rows.ends.iter_mut().zip(rows.rates.chunks_exact(2)) {
-            *end = row[1];
-        }
+        rows.take_rates();
         errors(&rows.terms, order, h, &rows.ends, &mut rows.errors);
         if !self.tape.is_polynomial() {
             let quiet = is_quiet(&rows.terms, order, self.accuracy);
@@ -97,7 +103,7 @@ impl Leaps<'_> {
         let mut good = end.zip(t, |end, t| if end > t { 1.0 } else { 0.0 });
         for i in 0..n {
             let size = x[i].zip(x_new[i], |x, x_new| larger(x.abs(), x_new.abs()));
-            let allowed = size.map(|size| self.accuracy.absolute + self.accuracy.tolerance * size);
+            let allowed = size.map(|size| self.accuracy.allowed(size));
             // NaN is no number that is small enough.
             let accepted =
                 rows.errors[i].zip(allowed, |error, allowed| if error <= allowed { 1.0 } else { 0.0 });
@@ -113,9 +119,7 @@ impl Leaps<'_> {
             inside(&rows.terms, self.order, share, &mut rows.inside);
             let time = t.zip(h, |t, h| t + share * h);
             T::expand(self.tape, time, &rows.inside, &rows.fixed, 1, &mut rows.rates);
-            for (end, row) in rows.ends.iter_mut().zip(rows.rates.chunks_exact(2)) {
-                *end = row[1];
-            }
+            rows.take_rates();
             look_inside(&rows.terms, (self.order, share), (h, quiet), &rows.ends, &mut rows.errors);
         }
     }

@@ -248,7 +248,7 @@ fn out_of_range(
 ) -> Option<f64> {
     let ((a, ta, ra), (b, tb, rb)) = (above, below);
     let size = a.abs() + b.abs() + (end - ta) * ra.mag() + (end - tb) * rb.mag();
-    let range = within + 20.0 * (accuracy.absolute + accuracy.tolerance * size);
+    let range = within + 20.0 * accuracy.allowed(size);
     let slope = |t: f64, since: f64, after: f64, before: f64| if t < since { before } else { after };
     let low =
         |t: f64| a + (t - ta) * slope(t, ta, ra.lo, ra.hi) - (b + (t - tb) * slope(t, tb, rb.hi, rb.lo));

@@ -48,10 +48,10 @@ impl Herd<'_> {
                     continue;
                 }
                 if good {
-                    seats.dense(lane, &mut segment);
                     let mut x = [0.0; STATES_MAX];
                     x.iter_mut().zip(&seats.x_new).for_each(|(x, wide)| *x = wide.0[lane]);
                     if end != t {
+                        seats.dense(lane, &mut segment);
                         segment.states(t, &mut x[..n]);
                     }
                     tell(place, &x[..n]);

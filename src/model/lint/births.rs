@@ -4,9 +4,9 @@
 //! are. Births: only an action that stands in no `if`, in the entry of a mode in which the new agent begins, is certain.
 
 use super::Warning;
-use super::unused::{each_action, is_library, lists, meant};
+use super::unused::{is_library, made, meant};
 use crate::model::context::Context;
-use crate::model::ir::{Action, ExprKind, ModeId, Model, TypeId};
+use crate::model::ir::{Action, Create, ExprKind, Model, TypeId};
 
 /// Links that are read, and that no constructor names.
 pub(super) fn unset_links(context: &Context, found: &mut Vec<Warning>) {
@@ -14,10 +14,8 @@ pub(super) fn unset_links(context: &Context, found: &mut Vec<Warning>) {
     if is_library(model) {
         return;
     }
-    let made =
-        |ty: TypeId| model.population.blocks.iter().any(|block| block.ty == ty) || is_created(model, ty);
-    let read = read_links(model);
-    for (id, ty) in model.types.iter_enumerated().filter(|(id, _)| made(*id)) {
+    let (made, creations, read) = (made(model), model.creations(), read_links(model));
+    for (id, ty) in model.types.iter_enumerated().filter(|(id, _)| made.contains(id)) {
         for (number, link) in ty.declared_links().iter().enumerate() {
             let is_set = link.required || !link.cases.is_empty();
             if is_set || meant(&link.name) || !read.contains(&(id, number)) {
@@ -28,7 +26,9 @@ pub(super) fn unset_links(context: &Context, found: &mut Vec<Warning>) {
                 constructor.agent.text == ty.name
                     && constructor.args.iter().any(|arg| arg.name.text == link.name)
             });
-            if !in_system && !is_given(model, id, number) {
+            let gives =
+                |create: &&Create| create.ty == id && create.links.get(number).is_some_and(Option::is_some);
+            if !in_system && !creations.iter().any(gives) {
                 let (name, agent, span) = (link.name.clone(), ty.name.clone(), link.span);
                 found.push(Warning::NeverSet { name, agent, span });
             }
@@ -42,9 +42,7 @@ pub(super) fn endless(context: &Context, found: &mut Vec<Warning>) {
     for (id, ty) in model.types.iter_enumerated() {
         for mode in ty.modes.indices() {
             let next = ty.modes[mode].entry.iter().find_map(|action| match action {
-                Action::Create(create) if create.ty == id && begins_in(model, id, create.mode, mode) => {
-                    Some(create)
-                }
+                Action::Create(create) if create.ty == id && ty.is_inside(create.mode, mode) => Some(create),
                 _ => None,
             });
             if let Some(create) = next {
@@ -52,28 +50,6 @@ pub(super) fn endless(context: &Context, found: &mut Vec<Warning>) {
             }
         }
     }
-}
-
-/// Whether an agent that starts in a leaf is in a mode then.
-fn begins_in(model: &Model, ty: TypeId, leaf: ModeId, mode: ModeId) -> bool {
-    model.types[ty].is_inside(leaf, mode)
-}
-
-fn is_created(model: &Model, ty: TypeId) -> bool {
-    model.creations().iter().any(|create| create.ty == ty)
-}
-
-/// Whether some `create` gives a link an agent.
-fn is_given(model: &Model, ty: TypeId, link: usize) -> bool {
-    let mut given = false;
-    for list in lists(model) {
-        each_action(list, &mut |action| {
-            if let Action::Create(create) = action {
-                given |= create.ty == ty && create.links.get(link).is_some_and(Option::is_some);
-            }
-        });
-    }
-    given
 }
 
 /// The links that some expression reads.

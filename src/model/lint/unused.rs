@@ -61,14 +61,20 @@ pub(super) fn is_library(model: &Model) -> bool {
     model.population.blocks.is_empty()
 }
 
+/// The types of which `system` or some action makes agents.
+pub(super) fn made(model: &Model) -> FxHashSet<TypeId> {
+    let mut made: FxHashSet<TypeId> = model.population.blocks.iter().map(|block| block.ty).collect();
+    made.extend(model.creations().iter().map(|create| create.ty));
+    made
+}
+
 /// Parameters, links, `let`s and discrete variables of agents; and types without agents.
 pub(super) fn members(context: &Context, found: &mut Vec<Warning>) {
     let model = &context.model;
     if is_library(model) {
         return;
     }
-    let mut made: FxHashSet<TypeId> = model.population.blocks.iter().map(|block| block.ty).collect();
-    made.extend(model.creations().iter().map(|create| create.ty));
+    let made = made(model);
     let (read, written) = (read(model), written(model));
     for (id, ty) in model.visible_types().map(|id| (id, &model.types[id])) {
         if !made.contains(&id) {

@@ -16,11 +16,17 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
+    /// The error that is allowed of a state of this size.
+    #[inline(always)]
+    pub fn allowed(&self, size: f64) -> f64 {
+        self.absolute + self.tolerance * size
+    }
+
     /// The size of the error in units of what is allowed; NaN if any number is.
     pub fn error_norm(&self, error: &[f64], x: &[f64], x_new: &[f64]) -> f64 {
         let mut norm: f64 = 0.0;
         for i in 0..error.len() {
-            let scale = self.absolute + self.tolerance * x[i].abs().max(x_new[i].abs());
+            let scale = self.allowed(x[i].abs().max(x_new[i].abs()));
             let ratio = error[i].abs() / scale;
             if ratio.is_nan() || !x_new[i].is_finite() {
                 return f64::NAN;
@@ -32,7 +38,7 @@ impl Accuracy {
 
     /// Bounds of a state with room for what the integration may be off by.
     pub fn padded(&self, bound: Interval) -> Interval {
-        let pad = 10.0 * (self.absolute + self.tolerance * bound.mag());
+        let pad = 10.0 * self.allowed(bound.mag());
         Interval { lo: bound.lo - pad, hi: bound.hi + pad }
     }
 }

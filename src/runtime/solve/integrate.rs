@@ -309,9 +309,7 @@ impl Integrator {
     fn first_step(&self, t: f64, x: &[f64], integration: &Integration, flow: &mut dyn Flow) -> f64 {
         let n = x.len();
         let norm = |v: &[f64]| {
-            (0..n).fold(0.0_f64, |norm, i| {
-                norm.max(v[i].abs() / (self.accuracy.absolute + self.accuracy.tolerance * x[i].abs()))
-            })
+            (0..n).fold(0.0_f64, |norm, i| norm.max(v[i].abs() / self.accuracy.allowed(x[i].abs())))
         };
         let first_rates = integration.past.rates(0);
         let (d0, d1) = (norm(x), norm(first_rates));

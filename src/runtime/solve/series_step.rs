@@ -23,7 +23,7 @@ pub fn reach<T: Numbers>(coefficients: &[T], n: usize, order: usize, accuracy: A
     let (mut last, mut before) = (T::all(0.0), T::all(0.0));
     let (mut defined, zero) = (T::all(0.0), T::all(0.0));
     for row in coefficients.chunks_exact(order + 1).take(n) {
-        let share = row[0].map(|x| 1.0 / (accuracy.absolute + accuracy.tolerance * x.abs()));
+        let share = row[0].map(|x| 1.0 / accuracy.allowed(x.abs()));
         last = last.zip(row[order].zip(share, |c, share| c.abs() * share), larger);
         before = before.zip(row[order - 1].zip(share, |c, share| c.abs() * share), larger);
         for c in row {
@@ -93,7 +93,7 @@ pub fn look(number: usize) -> f64 {
 pub fn is_quiet<T: Numbers>(terms: &[T], order: usize, accuracy: Accuracy) -> T {
     terms.chunks_exact(order + 1).fold(T::all(1.0), |quiet, terms| {
         let size = terms[3].zip(terms[4], |third, fourth| larger(third.abs(), fourth.abs()));
-        let allowed = terms[0].map(|x| accuracy.absolute + accuracy.tolerance * x.abs());
+        let allowed = terms[0].map(|x| accuracy.allowed(x.abs()));
         quiet.zip(size.zip(allowed, |size, allowed| if size <= allowed { 1.0 } else { 0.0 }), |a, b| a * b)
     })
 }
