@@ -465,6 +465,7 @@ fn shorten(agents: &mut Agents<'_>, group: &mut Group, t: f64) {
     }
     for &member in &group.members {
         agents.agents[member].segment.cut(t);
+        agents.divert(member);
     }
     group.integration.restart();
     group.version += 1;

@@ -9,7 +9,7 @@ use crate::codegen::program::{Atom, FunctionId};
 use crate::math::Interval;
 use crate::runtime::fold::{self, Folded};
 use crate::runtime::population::{ABSENT, Agents, Slots};
-use crate::runtime::present::{Boxes, Depth, Views};
+use crate::runtime::present::{Boxes, Depth, Views, depth_read};
 use crate::runtime::solve::roots::{AT_TURN, Curve};
 use crate::runtime::solve::segment::Segment;
 
@@ -159,39 +159,24 @@ impl Curve for AtomCurve<'_, '_> {
         if !self.folds.is_empty() {
             return self.folded_jet(t);
         }
-        let width = self.width;
-        if width > 0 {
-            let mut chunks = self.rows.numbers.chunks_exact_mut(3 * width);
-            for (slot, chunk) in (0..self.slots.len()).zip(&mut chunks) {
-                let agent = self.slots[slot];
-                if agent != ABSENT && self.atom.slots.contains(&slot) {
-                    let (x, rest) = chunk.split_at_mut(width);
-                    let (dx, ddx) = rest.split_at_mut(width);
-                    self.agents.agents[agent].segment.jet(t, x, dx, ddx);
-                }
-            }
-        }
-        let mut views: Views<'_> = (0..self.slots.len())
-            .map(|slot| {
-                let agent = self.slots[slot];
-                if agent == ABSENT {
-                    return AgentView::absent(&self.rows.absent);
-                }
-                let rows = &self.rows.numbers[3 * width * slot..3 * width * (slot + 1)];
-                AgentView {
-                    states: &rows[..width],
-                    rates: &rows[width..2 * width],
-                    accelerations: &rows[2 * width..],
-                    aux: &self.agents.agents[agent].aux,
-                }
-            })
-            .collect();
-        if let Some(own) = self.own {
-            views[0].aux = own;
-        }
+        self.fill_numbers(&mut |segment, x, dx, ddx| segment.jet(t, x, dx, ddx));
         let mut out = [0.0; 3];
-        self.agents.program.kernel(self.atom.rates).eval(&views, t, &mut out);
+        self.apply(self.atom.rates, t, &mut out);
         out
+    }
+
+    fn value(&mut self, t: f64) -> f64 {
+        let kernel = self.agents.program.kernel(self.atom.value);
+        if !self.folds.is_empty() || self.own.is_some() || depth_read(kernel) != Depth::States {
+            return self.jet(t)[0];
+        }
+        self.rows.evaluations += 1;
+        self.rows.operations += kernel.operations();
+        self.fill_numbers(&mut |segment, x, _, _| segment.states(t, x));
+        let mut out = [0.0];
+        self.apply(self.atom.value, t, &mut out);
+        debug_assert!(out[0].total_cmp(&self.jet(t)[0]).is_eq() || out[0].is_nan(), "the jet has another g");
+        out[0]
     }
 
     fn smooth(&self) -> bool {
@@ -232,9 +217,52 @@ impl Curve for AtomCurve<'_, '_> {
 }
 
 /// Fills in rows of states, rates and accelerations of one agent from its segment.
+type NumbersOf<'a> = dyn FnMut(&Segment, &mut [f64], &mut [f64], &mut [f64]) + 'a;
+
+/// The same over a stretch of time.
 type RowsOf<'a> = dyn FnMut(&Segment, &mut [Interval], &mut [Interval], &mut [Interval]) + 'a;
 
 impl AtomCurve<'_, '_> {
+    fn fill_numbers(&mut self, numbers_of: &mut NumbersOf<'_>) {
+        let width = self.width;
+        if width == 0 {
+            return;
+        }
+        let mut chunks = self.rows.numbers.chunks_exact_mut(3 * width);
+        for (slot, chunk) in (0..self.slots.len()).zip(&mut chunks) {
+            let agent = self.slots[slot];
+            if agent != ABSENT && self.atom.slots.contains(&slot) {
+                let (x, rest) = chunk.split_at_mut(width);
+                let (dx, ddx) = rest.split_at_mut(width);
+                numbers_of(&self.agents.agents[agent].segment, x, dx, ddx);
+            }
+        }
+    }
+
+    /// A function of the numbers at t.
+    fn apply(&self, function: FunctionId, t: f64, out: &mut [f64]) {
+        let width = self.width;
+        let mut views: Views<'_> = (0..self.slots.len())
+            .map(|slot| {
+                let agent = self.slots[slot];
+                if agent == ABSENT {
+                    return AgentView::absent(&self.rows.absent);
+                }
+                let rows = &self.rows.numbers[3 * width * slot..3 * width * (slot + 1)];
+                AgentView {
+                    states: &rows[..width],
+                    rates: &rows[width..2 * width],
+                    accelerations: &rows[2 * width..],
+                    aux: &self.agents.agents[agent].aux,
+                }
+            })
+            .collect();
+        if let Some(own) = self.own {
+            views[0].aux = own;
+        }
+        self.agents.program.kernel(function).eval(&views, t, out);
+    }
+
     /// States, rates and accelerations of all slots over [s, e].
     fn fill_boxes(&mut self, s: f64, e: f64) {
         self.fill(&mut |segment, x, dx, ddx| segment.jet_range(s, e, x, dx, ddx));

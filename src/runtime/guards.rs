@@ -390,8 +390,12 @@ impl<'p> Guards<'p> {
 
     /// The slots of an instance; quantified ones are absent.
     pub fn slots(&self, agents: &Agents<'_>, instance: u32) -> Slots {
-        let roots = self.roots(instance);
-        agents.slots(self.definition(instance).frame, &roots)
+        let definition = self.definition(instance);
+        let [first, second] = self.instances[instance as usize].roots.map(|agent| agent as usize);
+        match definition.origin {
+            Origin::Pair(_) => agents.slots(definition.frame, &[first, second]),
+            _ => agents.slots(definition.frame, &[first]),
+        }
     }
 
     /// The agents of an instance: one, or two for an interaction.
@@ -426,8 +430,12 @@ impl<'p> Guards<'p> {
     pub fn atom_slots(&self, agents: &Agents<'_>, index: usize) -> (&'p Atom, Slots) {
         let instance = self.atoms[index].instance;
         let definition = self.definition(instance);
-        let (atom, bound) = self.bindings(agents, index);
         let mut slots = self.slots(agents, instance);
+        if definition.quantified.is_empty() {
+            let atom = index - self.instances[instance as usize].atoms as usize;
+            return (definition.comparisons[atom], slots);
+        }
+        let (atom, bound) = self.bindings(agents, index);
         for &(binder, agent) in &bound {
             slots[binder.slot] = agent;
         }

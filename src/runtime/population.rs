@@ -65,12 +65,23 @@ impl Agent {
     }
 }
 
+/// What bounds of where an agent gets to rest on. Many are asked for at once: they lie close together.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Course {
+    /// Changes whenever what was derived from where the agent gets to becomes void.
+    pub version: u32,
+    /// Whether it has its clock for itself, and its flow reads nobody else.
+    pub alone: bool,
+}
+
 /// All agents with their links.
 pub struct Agents<'p> {
     /// The program they follow.
     pub program: &'p Program,
     /// By place.
     pub agents: Vec<Agent>,
+    /// By place.
+    pub courses: Vec<Course>,
     /// Who runs ahead.
     pub cold: Cold<'p>,
     /// The places of the living agents of each type, in the order of their numbers.
@@ -163,6 +174,7 @@ impl<'p> Agents<'p> {
             free_seats: vec![Vec::new(); program.types.len()],
             free: Vec::new(),
             retired: Vec::new(),
+            courses: vec![Course::default(); agents.len()],
             agents,
             of_type,
             linked_from,
@@ -303,11 +315,18 @@ impl<'p> Agents<'p> {
         self.of_type[ty].push(place);
         if place == self.agents.len() {
             self.agents.push(agent);
+            self.courses.push(Course::default());
             self.linked_from.push(Vec::new());
         } else {
             self.agents[place] = agent;
         }
+        self.divert(place);
         place
+    }
+
+    /// What was derived from where an agent gets to is void.
+    pub fn divert(&mut self, agent: usize) {
+        self.courses[agent].version += 1;
     }
 
     /// Whether a type has a seat that nobody has.

@@ -2,7 +2,7 @@
 //!
 //! Rates that are bounded whatever the states are (a speed times a cosine, a saturated input) bound the way of a state
 //! for as long as the agent follows the same flow with the same parameters; a state whose rate is bounded by those has
-//! bounds too. These are kept until the agent's group changes its version. The way begins at an anchor, where the agent
+//! bounds too. These are kept until the agent's course changes its version. The way begins at an anchor, where the agent
 //! has come to ([`anchor`]): if that is beyond the present, an event may cut it away, and the box with it. Other states
 //! have a box by Picard's operator ([`Enclosures`]), or none.
 
@@ -16,7 +16,7 @@ use crate::runtime::population::{ABSENT, Agents};
 use crate::runtime::present::Boxes;
 use crate::runtime::solve::control::Accuracy;
 
-/// Bounds of each state's rate, valid while the agent's group has the same version.
+/// Bounds of each state's rate, valid while the agent's course has the same version.
 #[derive(Clone, Copy, Debug)]
 struct Kept {
     version: u32,
@@ -106,12 +106,10 @@ impl Reaches {
         if n == 0 {
             return;
         }
-        let number = agents.agents[agent].group;
-        let group = &groups[number];
         let first = self.kept[agent].first as usize;
-        if is_alone(group) && to <= self.time_end {
+        if agents.courses[agent].alone && to <= self.time_end {
             let (t, states) = anchor(agents, groups, agent);
-            self.refresh(agents, group, agent, (t, states));
+            self.refresh(agents, agent, (t, states));
             let span = Interval { lo: from - t, hi: to - t };
             for (&x, &rate) in states.iter().zip(&self.rates[first..first + n]) {
                 out.push(if rate.is_whole() { rate } else { self.padded(x, span.mul(rate)) });
@@ -134,26 +132,25 @@ impl Reaches {
     pub fn rate(
         &mut self,
         agents: &Agents<'_>,
-        groups: &[Group],
         agent: usize,
         state: usize,
         anchor: (f64, &[f64]),
     ) -> Option<Interval> {
-        let group = &groups[agents.agents[agent].group];
-        if !is_alone(group) {
+        if !agents.courses[agent].alone {
             return None;
         }
-        self.refresh(agents, group, agent, anchor);
+        self.refresh(agents, agent, anchor);
         let rate = self.rates[self.kept[agent].first as usize + state];
         (!rate.is_whole()).then_some(rate)
     }
 
     /// Bounds the rates of an agent that is alone from its anchor on, if what is known of them is not valid there.
-    fn refresh(&mut self, agents: &Agents<'_>, group: &Group, agent: usize, anchor: (f64, &[f64])) {
+    fn refresh(&mut self, agents: &Agents<'_>, agent: usize, anchor: (f64, &[f64])) {
         let Kept { version, since, .. } = self.kept[agent];
-        if version != group.version || anchor.0 < since {
+        let now = agents.courses[agent].version;
+        if version != now || anchor.0 < since {
             let pure = self.bound(agents, agent, anchor);
-            self.kept[agent] = Kept { version: group.version, since: anchor.0, pure, ..self.kept[agent] };
+            self.kept[agent] = Kept { version: now, since: anchor.0, pure, ..self.kept[agent] };
         }
     }
 
@@ -223,9 +220,4 @@ pub fn anchor<'a>(agents: &'a Agents<'_>, groups: &[Group], agent: usize) -> (f6
         Some(now) => now,
         None => (groups[agents.agents[agent].group].clock, &agents.agents[agent].states),
     }
-}
-
-/// Whether a group is one agent whose flow reads no other.
-fn is_alone(group: &Group) -> bool {
-    group.members.len() == 1 && group.leaders.is_empty()
 }
