@@ -121,7 +121,10 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
         for (k, &agent) in self.involved.iter().enumerate() {
             let (x, rest) = boxes[3 * width * k..3 * width * (k + 1)].split_at_mut(width);
             let (dx, ddx) = rest.split_at_mut(width);
-            agents.agents[agent].segment.jet_range(time.lo, time.hi, x, dx, ddx);
+            for state in 0..agents.agents[agent].states.len() {
+                [x[state], dx[state], ddx[state]] =
+                    agents.agents[agent].segment.jet_range(state, time.lo, time.hi);
+            }
         }
         let row = |agent: usize| {
             let Ok(k) = self.involved.binary_search(&agent) else {
@@ -148,6 +151,14 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
     }
 }
 
+/// Puts a state, its rate and its second rate into the rows of a slot.
+fn put<T: Copy>(rows: &mut [T], width: usize, (slot, state): (usize, usize), jet: [T; 3]) {
+    let first = 3 * width * slot + state;
+    for (row, value) in jet.into_iter().enumerate() {
+        rows[first + row * width] = value;
+    }
+}
+
 fn n_states(agents: &Agents<'_>, agent: usize) -> usize {
     if agent == ABSENT { 0 } else { agents.agents[agent].states.len() }
 }
@@ -159,7 +170,7 @@ impl Curve for AtomCurve<'_, '_> {
         if !self.folds.is_empty() {
             return self.folded_jet(t);
         }
-        self.fill_numbers(&mut |segment, x, dx, ddx| segment.jet(t, x, dx, ddx));
+        self.fill_numbers(self.atom.rates, &|segment, state| segment.state_jet(state, t));
         let mut out = [0.0; 3];
         self.apply(self.atom.rates, t, &mut out);
         out
@@ -172,7 +183,7 @@ impl Curve for AtomCurve<'_, '_> {
         }
         self.rows.evaluations += 1;
         self.rows.operations += kernel.operations();
-        self.fill_numbers(&mut |segment, x, _, _| segment.states(t, x));
+        self.fill_numbers(self.atom.value, &|segment, state| [segment.state(state, t), f64::NAN, f64::NAN]);
         let mut out = [0.0];
         self.apply(self.atom.value, t, &mut out);
         debug_assert!(out[0].total_cmp(&self.jet(t)[0]).is_eq() || out[0].is_nan(), "the jet has another g");
@@ -216,27 +227,21 @@ impl Curve for AtomCurve<'_, '_> {
     }
 }
 
-/// Fills in rows of states, rates and accelerations of one agent from its segment.
-type NumbersOf<'a> = dyn FnMut(&Segment, &mut [f64], &mut [f64], &mut [f64]) + 'a;
-
-/// The same over a stretch of time.
-type RowsOf<'a> = dyn FnMut(&Segment, &mut [Interval], &mut [Interval], &mut [Interval]) + 'a;
-
-impl AtomCurve<'_, '_> {
-    fn fill_numbers(&mut self, numbers_of: &mut NumbersOf<'_>) {
-        let width = self.width;
-        if width == 0 {
-            return;
-        }
-        let mut chunks = self.rows.numbers.chunks_exact_mut(3 * width);
-        for (slot, chunk) in (0..self.slots.len()).zip(&mut chunks) {
-            let agent = self.slots[slot];
-            if agent != ABSENT && self.atom.slots.contains(&slot) {
-                let (x, rest) = chunk.split_at_mut(width);
-                let (dx, ddx) = rest.split_at_mut(width);
-                numbers_of(&self.agents.agents[agent].segment, x, dx, ddx);
+impl<'a> AtomCurve<'a, '_> {
+    /// The rows that a function reads, from the segments of the agents: state, rate and second rate.
+    fn fill_numbers(&mut self, function: FunctionId, jet: &dyn Fn(&Segment, usize) -> [f64; 3]) {
+        for &(slot, state) in &self.agents.program.kernel(function).reads().moving {
+            if let Some(segment) = self.segment(slot) {
+                put(&mut self.rows.numbers, self.width, (slot, state), jet(segment, state));
             }
         }
+    }
+
+    /// The last segment of the agent in a slot; none if there is nobody, or nothing is read of it but what events change.
+    fn segment(&self, slot: usize) -> Option<&'a Segment> {
+        let agent = self.slots[slot];
+        let is_read = agent != ABSENT && self.atom.slots.contains(&slot);
+        is_read.then(|| &self.agents.agents[agent].segment)
     }
 
     /// A function of the numbers at t.
@@ -263,23 +268,14 @@ impl AtomCurve<'_, '_> {
         self.agents.program.kernel(function).eval(&views, t, out);
     }
 
-    /// States, rates and accelerations of all slots over [s, e].
+    /// The rows that the comparison and its turns read over [s, e].
     fn fill_boxes(&mut self, s: f64, e: f64) {
-        self.fill(&mut |segment, x, dx, ddx| segment.jet_range(s, e, x, dx, ddx));
-    }
-
-    fn fill(&mut self, rows_of: &mut RowsOf<'_>) {
-        let width = self.width;
-        if width == 0 {
-            return;
-        }
-        let mut chunks = self.rows.boxes.chunks_exact_mut(3 * width);
-        for (slot, chunk) in (0..self.slots.len()).zip(&mut chunks) {
-            let agent = self.slots[slot];
-            if agent != ABSENT && self.atom.slots.contains(&slot) {
-                let (x, rest) = chunk.split_at_mut(width);
-                let (dx, ddx) = rest.split_at_mut(width);
-                rows_of(&self.agents.agents[agent].segment, x, dx, ddx);
+        for function in [Some(self.atom.rates), self.atom.turns].into_iter().flatten() {
+            for &(slot, state) in &self.agents.program.kernel(function).reads().moving {
+                if let Some(segment) = self.segment(slot) {
+                    let jet = segment.jet_range(state, s, e);
+                    put(&mut self.rows.boxes, self.width, (slot, state), jet);
+                }
             }
         }
     }
@@ -349,7 +345,12 @@ impl AtomCurve<'_, '_> {
         let size = |bound: Interval| bound.lo.abs().max(bound.hi.abs());
         let mut spread = [size(jet[1]) * r + 0.5 * size(jet[2]) * r * r, size(jet[2]) * r, 0.0];
         for power in 3..=degree {
-            self.fill(&mut |segment, _, _, ddx| segment.term_range(s, e, power, ddx));
+            for &(slot, state) in &self.agents.program.kernel(self.atom.rates).reads().moving {
+                if let Some(segment) = self.segment(slot) {
+                    let first = 3 * self.width * slot;
+                    self.rows.boxes[first + 2 * self.width + state] = segment.term_range(state, s, e, power);
+                }
+            }
             let mut out = [Interval::WHOLE; 3];
             self.evaluate(self.atom.rates, Interval { lo: middle, hi: middle }, &mut out);
             let (term, k) = (size(out[2]), power as f64);
