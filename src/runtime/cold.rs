@@ -73,6 +73,11 @@ impl<'p> Cold<'p> {
         self.is_used() && self.of_mode[ty][mode].is_some()
     }
 
+    /// Whether agents of a type can be cold in any mode.
+    pub fn may_ever_be(&self, ty: usize) -> bool {
+        self.is_used() && self.of_mode[ty].iter().any(Option::is_some)
+    }
+
     /// Whether an agent is cold.
     #[inline]
     pub fn is_cold(&self, agent: usize) -> bool {
@@ -279,14 +284,15 @@ impl<'p> Cold<'p> {
         (ty, leaps.order as u64 + 1, leaps.tape.operations(leaps.order) + leaps.tape.operations(1))
     }
 
-    /// Advances all cold agents to `until` or beyond; those that could go no further are told. Their ways stay known from
-    /// `from` on.
-    pub fn advance(&mut self, from: f64, until: f64, tell: &mut dyn FnMut(usize)) -> Vec<u64> {
+    /// Advances all cold agents to `until` or beyond; those are told that could go no further, and those of whom it should be
+    /// looked at whether their flow is stiff (true). Their ways stay known from `from` on.
+    pub fn advance(&mut self, from: f64, until: f64, tell: &mut dyn FnMut(usize, bool)) -> Vec<u64> {
         let mut steps = Vec::with_capacity(self.herds.len());
         for herd in &mut self.herds {
-            let Advanced { steps: taken, refused } = herd.advance(from, until);
+            let Advanced { steps: taken, refused, unlooked } = herd.advance(from, until);
             steps.push(taken);
-            refused.into_iter().for_each(|place| tell(herd.agents[place] as usize));
+            refused.into_iter().for_each(|place| tell(herd.agents[place] as usize, false));
+            unlooked.into_iter().for_each(|place| tell(herd.agents[place] as usize, true));
         }
         steps
     }

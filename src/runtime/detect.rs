@@ -7,9 +7,10 @@ use smallvec::{SmallVec, smallvec};
 use crate::codegen::kernel::{AgentBox, AgentView};
 use crate::codegen::program::{Atom, FunctionId};
 use crate::math::Interval;
+use crate::runtime::flow_rates::{rate_ranges, rates_at};
 use crate::runtime::fold::{self, Folded};
 use crate::runtime::population::{ABSENT, Agents, Slots};
-use crate::runtime::present::{Boxes, Depth, Views, depth_read};
+use crate::runtime::present::{Boxes, Depth, Views};
 use crate::runtime::solve::roots::{AT_TURN, Curve};
 use crate::runtime::solve::segment::Segment;
 
@@ -51,6 +52,8 @@ pub struct AtomCurve<'a, 'p> {
     interrupt: Option<&'a AtomicBool>,
     rows: &'a mut CurveRows,
     width: usize,
+    /// Whether the source reads rates (`x'`): they are those of the flow.
+    by_flow: bool,
 }
 
 impl<'a, 'p> AtomCurve<'a, 'p> {
@@ -70,7 +73,8 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
             rows.numbers.resize(total, 0.0);
             rows.boxes.resize(total, Interval::WHOLE);
         }
-        Self { agents, atom, slots, folds, involved, own: None, interrupt: None, rows, width }
+        let by_flow = fold::depth(agents.program, agents.program.kernel(atom.value), folds) != Depth::States;
+        Self { agents, atom, slots, folds, involved, own: None, interrupt: None, rows, width, by_flow }
     }
 
     /// The same with these auxiliary columns of self.
@@ -89,7 +93,11 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
         for (k, &agent) in self.involved.iter().enumerate() {
             let (x, rest) = self.rows.numbers[3 * width * k..3 * width * (k + 1)].split_at_mut(width);
             let (dx, ddx) = rest.split_at_mut(width);
+            let n = agents.agents[agent].states.len();
             agents.agents[agent].segment.jet(t, x, dx, ddx);
+            if self.by_flow {
+                rates_at(agents, agent, t, &mut dx[..n], &mut ddx[..n]);
+            }
         }
         let row = |agent: usize| {
             let Ok(k) = self.involved.binary_search(&agent) else {
@@ -116,16 +124,27 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
 
     /// Bounds of the jet of an atom with aggregates.
     fn folded_range(&mut self, time: Interval) -> [Interval; 3] {
-        let (agents, width) = (self.agents, self.width);
-        let CurveRows { boxes, registers, absent, absent_box, .. } = &mut *self.rows;
+        let agents = self.agents;
         for (k, &agent) in self.involved.iter().enumerate() {
-            let (x, rest) = boxes[3 * width * k..3 * width * (k + 1)].split_at_mut(width);
-            let (dx, ddx) = rest.split_at_mut(width);
+            let segment = &agents.agents[agent].segment;
             for state in 0..agents.agents[agent].states.len() {
-                [x[state], dx[state], ddx[state]] =
-                    agents.agents[agent].segment.jet_range(state, time.lo, time.hi);
+                let jet = segment.jet_range(state, time.lo, time.hi);
+                put(&mut self.rows.boxes, self.width, (k, state), jet);
             }
         }
+        let mut out = [Interval::WHOLE; 3];
+        self.put_flow(time, Interval::hull);
+        self.fold_rows(self.atom.rates, Depth::Accelerations, time, &mut out);
+        if self.put_flow(time, |_, of_flow| of_flow) {
+            self.fold_rows(self.atom.value, Depth::States, time, &mut out);
+        }
+        out
+    }
+
+    /// A function with aggregates over the rows of those involved.
+    fn fold_rows(&mut self, function: FunctionId, depth: Depth, time: Interval, out: &mut [Interval]) {
+        let (agents, width) = (self.agents, self.width);
+        let CurveRows { boxes, registers, absent, absent_box, .. } = &mut *self.rows;
         let row = |agent: usize| {
             let Ok(k) = self.involved.binary_search(&agent) else {
                 return AgentBox::absent(absent_box, absent);
@@ -138,16 +157,13 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
                 aux: &agents.agents[agent].aux,
             }
         };
-        let depth = Depth::Accelerations;
         let leaves = fold::leaf_ranges(agents.program, self.folds, depth, time, registers, &row);
-        let mut out = [Interval::WHOLE; 3];
-        let kernel = agents.program.kernel(self.atom.rates);
+        let kernel = agents.program.kernel(function);
         let mut boxes = fold::boxes(self.slots, &leaves, &row);
         if let Some(own) = self.own {
             boxes[0].aux = own;
         }
-        kernel.range(&boxes, time, registers, &mut out);
-        out
+        kernel.range(&boxes, time, registers, out);
     }
 }
 
@@ -171,6 +187,16 @@ impl Curve for AtomCurve<'_, '_> {
             return self.folded_jet(t);
         }
         self.fill_numbers(self.atom.rates, &|segment, state| segment.state_jet(state, t));
+        if self.by_flow {
+            for (slot, &agent) in self.slots.iter().enumerate() {
+                if self.segment(slot).is_some() {
+                    let n = self.agents.agents[agent].states.len();
+                    let rows = &mut self.rows.numbers[3 * self.width * slot..][..3 * self.width];
+                    let (dx, ddx) = rows[self.width..].split_at_mut(self.width);
+                    rates_at(self.agents, agent, t, &mut dx[..n], &mut ddx[..n]);
+                }
+            }
+        }
         let mut out = [0.0; 3];
         self.apply(self.atom.rates, t, &mut out);
         out
@@ -178,7 +204,7 @@ impl Curve for AtomCurve<'_, '_> {
 
     fn value(&mut self, t: f64) -> f64 {
         let kernel = self.agents.program.kernel(self.atom.value);
-        if !self.folds.is_empty() || self.own.is_some() || depth_read(kernel) != Depth::States {
+        if !self.folds.is_empty() || self.own.is_some() || self.by_flow {
             return self.jet(t)[0];
         }
         self.rows.evaluations += 1;
@@ -198,8 +224,10 @@ impl Curve for AtomCurve<'_, '_> {
         if self.atom.turns.is_none() || !self.folds.is_empty() {
             return false;
         }
+        let time = Interval { lo: t, hi: t };
         self.fill_boxes(t, t);
-        self.any_turn(Interval { lo: t, hi: t }, |turn| turn.mig() <= AT_TURN)
+        self.put_flow(time, |_, of_flow| of_flow);
+        self.any_turn(time, |turn| turn.mig() <= AT_TURN)
     }
 
     fn given_up(&self) -> bool {
@@ -216,7 +244,11 @@ impl Curve for AtomCurve<'_, '_> {
             return self.affine_range(s, e);
         }
         let mut out = [Interval::WHOLE; 3];
+        self.put_flow(time, Interval::hull);
         self.evaluate(self.atom.rates, time, &mut out);
+        if self.put_flow(time, |_, of_flow| of_flow) {
+            self.evaluate(self.atom.value, time, &mut out);
+        }
         if s < e && !self.atom.smooth {
             // The rates hold between the jumps of g only, and bound nothing across one.
             (out[1], out[2]) = (Interval::WHOLE, Interval::WHOLE);
@@ -278,6 +310,33 @@ impl<'a> AtomCurve<'a, '_> {
                 }
             }
         }
+    }
+
+    /// Where the source reads rates: puts those of the flow into the boxes in place of the slopes of the segments, or beside
+    /// them. A rate of g is along the slopes; g itself is of the rates. False, and nothing is done, where it reads none.
+    fn put_flow(&mut self, time: Interval, join: impl Fn(Interval, Interval) -> Interval) -> bool {
+        if !self.by_flow {
+            return false;
+        }
+        let of_slots: Vec<(usize, usize)> = if self.folds.is_empty() {
+            let is_read = |&(slot, _): &(usize, &usize)| self.segment(slot).is_some();
+            self.slots.iter().enumerate().filter(is_read).map(|(slot, &agent)| (slot, agent)).collect()
+        } else {
+            self.involved.iter().copied().enumerate().collect()
+        };
+        let width = self.width;
+        for (place, agent) in of_slots {
+            let n = self.agents.agents[agent].states.len();
+            let (mut rates, mut seconds) = (vec![Interval::WHOLE; n], vec![Interval::WHOLE; n]);
+            let CurveRows { boxes, registers, .. } = &mut *self.rows;
+            let span = (time.lo, time.hi);
+            if rate_ranges(self.agents, agent, span, registers, &mut rates, &mut seconds) {
+                let (dx, ddx) = boxes[3 * width * place..][width..3 * width].split_at_mut(width);
+                dx.iter_mut().zip(rates).for_each(|(slope, rate)| *slope = join(*slope, rate));
+                ddx[..n].copy_from_slice(&seconds);
+            }
+        }
+        true
     }
 
     /// A function over the boxes.

@@ -11,6 +11,7 @@ use crate::math::Interval;
 use crate::runtime::candidates::Candidates;
 use crate::runtime::definition::{AtomShape, Definition, definitions};
 pub use crate::runtime::definition::{Listing, Origin};
+use crate::runtime::noticed::Noticed;
 use crate::runtime::population::{ABSENT, Agents, Slots};
 
 /// Numbers of atom instances.
@@ -145,6 +146,10 @@ pub struct Guards<'p> {
     pub instances: Vec<Instance>,
     /// By number.
     pub atoms: Vec<AtomState>,
+    /// The atoms that may be `touched` or `rooted`, some more than once.
+    pub roused: Vec<u32>,
+    /// What is read of agents besides states and modes.
+    pub noticed: Noticed,
     /// `rising`: whether its condition has been false since arming.
     pub rising: Vec<bool>,
     /// For each agent, the instances of which it is a root.
@@ -186,6 +191,8 @@ impl<'p> Guards<'p> {
             instances: Vec::new(),
             atoms: Vec::new(),
             rising: Vec::new(),
+            roused: Vec::new(),
+            noticed: Noticed::new(agents, &definitions),
             of_agent: vec![Vec::new(); agents.len()],
             hearing: vec![Vec::new(); agents.len()],
             over_type: vec![Vec::new(); agents.of_type.len()],
@@ -317,6 +324,18 @@ impl<'p> Guards<'p> {
         for instance in std::mem::take(&mut self.retired) {
             self.free[self.instances[instance as usize].definition as usize].push(instance);
         }
+    }
+
+    /// Forgets of the atoms of some instances, rising, what was so at the instant only.
+    pub fn calm(&mut self, instances: &[u32]) {
+        let Self { atoms, roused, .. } = self;
+        roused.retain(|&index| {
+            let state = &mut atoms[index as usize];
+            if instances.binary_search(&state.instance).is_ok() {
+                (state.touched, state.rooted) = (false, false);
+            }
+            state.touched || state.rooted
+        });
     }
 
     /// The instances of a link of an agent, in the order of its cases.

@@ -31,6 +31,8 @@ pub struct Herd<'p> {
     rows: Vec<f64>,
     /// For each place, bounds of the states since the window began, then over the last step.
     bounds: Vec<Interval>,
+    /// By place.
+    looks: Vec<Looks>,
     /// The steps in this window of those that something may concern in it.
     pub tracks: Tracks,
     /// Scratch.
@@ -44,6 +46,35 @@ pub struct Advanced {
     pub steps: u64,
     /// The places of those that could go no further by such steps, or only by very many.
     pub refused: Vec<usize>,
+    /// The places of those that have taken many, so that somebody should look whether their flow is stiff.
+    pub unlooked: Vec<usize>,
+}
+
+/// How many steps an agent takes before somebody should look whether its flow is stiff.
+#[derive(Clone, Copy, Debug)]
+struct Looks {
+    /// So many more.
+    left: u32,
+    /// So many from one look to the next.
+    patience: u32,
+}
+
+/// No steps have been taken.
+const NO_LOOKS: Looks = Looks { left: 128, patience: 128 };
+/// The patience doubles from look to look up to this.
+const PATIENCE_MAX: u32 = 1024;
+
+impl Looks {
+    /// Counts steps; whether somebody should look.
+    fn count(&mut self, steps: u32) -> bool {
+        self.left = self.left.saturating_sub(steps);
+        if self.left > 0 {
+            return false;
+        }
+        self.patience = (2 * self.patience).min(PATIENCE_MAX);
+        self.left = self.patience;
+        true
+    }
 }
 
 /// An agent that takes so many steps in a window is left to who can choose another method.
@@ -57,7 +88,7 @@ impl<'p> Herd<'p> {
         let n = leaps.tape.n_states;
         let alone = RefCell::new((LeapRows::new(&leaps), Segment::default()));
         let tracks = Tracks::new(n, leaps.order + 1);
-        let (agents, clocks, rows, bounds) = Default::default();
+        let (agents, clocks, rows, bounds, looks) = Default::default();
         Self {
             leaps,
             n,
@@ -66,6 +97,7 @@ impl<'p> Herd<'p> {
             clocks,
             rows,
             bounds,
+            looks,
             tracks,
             alone,
         }
@@ -79,6 +111,7 @@ impl<'p> Herd<'p> {
     pub fn push(&mut self, agent: usize) -> usize {
         self.agents.push(agent as u32);
         self.clocks.push(f64::INFINITY);
+        self.looks.push(NO_LOOKS);
         self.rows.resize(self.agents.len() * self.width, 0.0);
         self.bounds.resize(self.agents.len() * 2 * self.n, Interval::WHOLE);
         self.agents.len() - 1
@@ -90,6 +123,7 @@ impl<'p> Herd<'p> {
         self.tracks.remove(place, last);
         self.agents.swap_remove(place);
         self.clocks.swap_remove(place);
+        self.looks.swap_remove(place);
         self.rows.copy_within(last * width.., place * width);
         self.rows.truncate(last * width);
         let width = 2 * self.n;
@@ -284,6 +318,9 @@ impl<'p> Herd<'p> {
                 let LeapRows { lows, highs, .. } = &lanes.rows;
                 self.bounds[last] = Interval { lo: lows[i].0[lane], hi: highs[i].0[lane] };
             }
+            if self.looks[place].count(lanes.taken[lane]) {
+                advanced.unlooked.push(place);
+            }
             if !good || goes_on {
                 advanced.refused.push(place);
             }
@@ -322,10 +359,12 @@ impl<'p> Herd<'p> {
             *since = Interval { lo: low.0[lane], hi: high.0[lane] };
         }
         let steps_max = if lanes.is_tracked[lane] { u32::MAX } else { STEPS_MAX };
+        let mut taken = lanes.taken[lane];
         for _ in 0..steps_max {
             if t >= lanes.target[lane] {
                 break;
             }
+            taken += 1;
             let leap = self.leaps.leap(t, &x[..n], rows, &mut x_new[..n]);
             if leap.good == 0.0 {
                 advanced.refused.push(place);
@@ -346,6 +385,9 @@ impl<'p> Herd<'p> {
         }
         if lanes.is_tracked[lane] {
             return;
+        }
+        if self.looks[place].count(taken) {
+            advanced.unlooked.push(place);
         }
         if t < lanes.target[lane] && advanced.refused.last() != Some(&place) {
             advanced.refused.push(place);
