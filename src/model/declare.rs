@@ -323,6 +323,11 @@ impl<'a> Context<'a> {
                 }
             }
         }
+        for default in item.formals.iter().filter_map(|formal| formal.default.as_ref()) {
+            let (what, found) = ("who takes part in an interaction", "given by default".to_string());
+            let help = "leave the default out; an interaction is of every two agents of these types";
+            self.report(TypeError::NotAllowed { what, found, span: default.span, help });
+        }
         let [a, b] = item.formals.as_slice() else {
             let (count, span) = (item.formals.len(), item.name.span);
             return self.report(InteractionError::Participants { count, span });

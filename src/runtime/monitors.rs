@@ -14,6 +14,9 @@ use crate::runtime::verdicts::{ACCURACY, Decider, Extreme, Found, Trace, Watched
 /// After so many pieces of one stretch the best value so far is taken.
 const PIECES_MAX: usize = 100_000;
 
+/// A trace goes on for so long behind its last window: a window may be a point of time, a stretch of a signal is not. s.
+const BEYOND: f64 = 1e-6;
+
 /// What is not better than the best by this share of it is not looked for.
 const SHARE: f64 = 1e-14;
 
@@ -60,7 +63,8 @@ impl<'p> Engine<'p, '_> {
                 }
             }
             Watched::Nested { operators, inner } => {
-                let ahead = operators.iter().map(|(_, window)| window[1]).sum::<f64>() + inner.ahead();
+                let ahead =
+                    operators.iter().map(|(_, window)| window[1]).sum::<f64>() + inner.ahead() + BEYOND;
                 let e = e.min(ahead);
                 if s < e {
                     for (condition, trace) in inner.traces() {

@@ -156,6 +156,14 @@ pub fn greatest_ahead(signal: &[Piece], [c, d]: [f64; 2]) -> Vec<Piece> {
     if begin > end - c {
         return Vec::new();
     }
+    if begin == end - c {
+        // The window is reached at one time only.
+        let best = greatest(signal, [begin + c, end]);
+        let piece = |(time, value, origin): (f64, f64, Origin)| {
+            Piece::constant(begin, begin, value, Origin::At(origin.time(time)))
+        };
+        return best.into_iter().map(piece).collect();
+    }
     let peaks = Peaks::new(&pieces);
     let mut breaks: Vec<f64> = pieces
         .iter()

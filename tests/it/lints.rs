@@ -512,3 +512,12 @@ fn of_modes_inside_one_that_is_entered_each_is_looked_at() {
          system { a = A() }  run { until 5 }";
     assert_eq!(codes(text), ["HY0604"]);
 }
+
+/// Rule 3: on its boundary a guard is held by rates that lead out.
+#[test]
+fn a_reset_onto_the_boundary_does_not_fire_again() {
+    let text = "agent A { state x = 6  initial mode M { flow { x' = -1 }  a: when x >= 5 -> M { x := 5 } } }
+                system { a = A() }  run { until 2 }";
+    assert!(codes(text).is_empty());
+    assert_eq!(crate::harness::simulate(text).times("A.a"), [0.0]);
+}

@@ -166,6 +166,34 @@ const BALL: &str = "agent Ball { state x = 1, v = 0  discrete n: int = 0
        flow { x' = v  v' = -9.81 }  bounce: when x <= 0 { v := -0.8*v  n := n + 1 } }
      system { ball = Ball() }\n";
 
+/// A window of one time, inside another: x = 1 + t.
+#[test]
+fn windows_of_one_time() {
+    let text = |until: f64| {
+        format!(
+            "agent A {{ state x = 1  flow {{ x' = 1 }} }}  system {{ a = A() }}
+             property p1 = eventually [0, 0] always [0, 0] forall a in A: a.x >= 0
+             property p2 = eventually [0, 0] always [0.5, 0.5] forall a in A: a.x >= 0
+             property p3 = always [0.5, 0.5] eventually [0, 0] forall a in A: a.x >= 2
+             property p4 = always [0, 0] eventually [0.5, 0.5] forall a in A: a.x >= 5
+             property p5 = always [0, 0] forall a in A: a.x <= 0 until [0.5, 0.5] forall a in A: a.x >= 5
+             property p6 = always [0, 0] eventually [0.25, 0.5] forall a in A: a.x >= 1
+             run {{ until {until} }}"
+        )
+    };
+    for until in [2.0, 0.5] {
+        let run = run(&text(until));
+        let margins = [("p1", 1.0), ("p2", 1.5), ("p3", -0.5), ("p4", -3.5), ("p6", 0.5)];
+        for (name, margin) in margins {
+            let found = verdict(&run, name);
+            near(found.margin, margin, 1e-9);
+            assert_eq!(found.holds, margin > 0.0, "{name}");
+        }
+        let found = verdict(&run, "p5");
+        assert_eq!((found.holds, found.margin < -0.9), (false, true), "{found:?}");
+    }
+}
+
 #[test]
 fn both_sides_of_an_event_count_and_a_touch_is_no_crossing() {
     let run = run(&format!(

@@ -12,7 +12,7 @@ use crate::calculus::form::FormId;
 use crate::calculus::graph::{Node, NodeId};
 use crate::calculus::lint::Warning;
 use crate::calculus::lint::effects::{Effect, before, effect, guard, nodes, plain_guard, read_by, reads};
-use crate::calculus::lint::truth::{Truth, holds, truth};
+use crate::calculus::lint::truth::{Truth, truth};
 use crate::calculus::reader::Reader;
 use crate::calculus::system::{
     ActionStep, Condition, Frame, FunctionId, Guard, Relation, System, Target, TransitionSystem,
@@ -137,8 +137,9 @@ impl<'s> Kept<'s> {
     fn atom(&mut self, relation: Relation, value: FunctionId) -> bool {
         let (before, after) = (self.before[&value], self.after.function(value));
         let forms = &mut self.after.forms;
-        if holds(relation, forms.interval(after)) {
-            return true;
+        // On its boundary the rates decide (rule 3), and may hold it false.
+        if forms.interval(after).hi < 0.0 {
+            return relation != Relation::Crossing;
         }
         let change = forms.plus(after, -1.0, before);
         relation != Relation::Crossing && change.is_some_and(|change| forms.interval(change).hi <= 0.0)

@@ -118,3 +118,13 @@ fn rule_11_the_rate_of_a_pair_is_a_number_that_only_events_change() {
     let (run, failed) = simulate_error(&with("0.001*a.k"));
     assert_eq!((failed.code, run.time), ("HY0514", 1.0), "{failed:?}");
 }
+
+#[test]
+fn who_takes_part_has_no_default() {
+    let told = refused(
+        "agent A { state x = 0  flow { x' = 1 } }
+         interaction I(a: A, b: A = nonsense) { when a.x >= b.x + 1 { a.x := 0 } }
+         system { a = A[2]() }  run { until 1 }",
+    );
+    assert!(told.contains("HY0225") && told.contains("takes part in an interaction"), "{told}");
+}
