@@ -112,6 +112,7 @@ fn aggregate(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> 
         moves,
         reads,
         around,
+        near: Vec::new(),
     });
     scope.folded.push(Folded { inner, filter: *filter, term });
     let slot = slot as u32;

@@ -210,6 +210,13 @@ fn transition(
             block.line(6, format!("near: {}", range(&sheet, near, 1, "pairs")));
         }
         block.ranges(&sheet, &guard.condition, 6);
+        for fold in transition.frame.folds.iter().filter(|fold| fold.around.is_empty()) {
+            let (name, near) = (
+                transition.frame.slots[fold.slot].name(),
+                range(&sheet, &fold.near, fold.range.slot, "agents"),
+            );
+            block.line(6, format!("near of {name}: {near}"));
+        }
         block.atoms(&sheet, &guard.atoms, 6);
     }
     if let Some(priority) = transition.priority {

@@ -46,6 +46,7 @@ pub fn ranges(mut system: System) -> System {
         let asker = Asker { system: &system, bounds: &bounds, frame, atoms: &guard.atoms };
         pair.near = asker.near(&guard.condition, 1, Settled::False);
         asker.quantifiers(&mut guard.condition);
+        aggregates(&system, &bounds, &mut transition.frame);
     }
     system.interactions = interactions;
     for number in 0..system.types.len() {
@@ -59,9 +60,24 @@ pub fn ranges(mut system: System) -> System {
             Asker { system: &system, bounds: &bounds, frame, atoms: &guard.atoms }
                 .quantifiers(&mut guard.condition);
         }
+        let frames = transitions.iter_mut().map(|transition| &mut transition.frame);
+        let of_claims = modes.iter_mut().flat_map(|mode| &mut mode.claims).map(|claim| &mut claim.frame);
+        frames.chain(of_claims).for_each(|frame| aggregates(&system, &bounds, frame));
         (system.types[number].transitions, system.types[number].modes) = (transitions, modes);
     }
     system
+}
+
+/// The lists of the aggregates of a frame that do not stand in one another.
+fn aggregates(system: &System, bounds: &Bounds, frame: &mut Frame) {
+    let ranges = frame.folds.iter().map(|fold| {
+        let asker = Asker { system, bounds, frame, atoms: &fold.filter.atoms };
+        let stands_alone = fold.around.is_empty();
+        let near = || asker.near(&fold.filter.condition, fold.range.slot, Settled::False);
+        stands_alone.then(near).unwrap_or_default()
+    });
+    let ranges: Vec<Vec<Near>> = ranges.collect();
+    frame.folds.iter_mut().zip(ranges).for_each(|(fold, near)| fold.near = near);
 }
 
 /// Whether any condition is over more than one agent that is not named by a link.

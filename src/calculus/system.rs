@@ -99,6 +99,8 @@ pub struct Fold {
     pub reads: Vec<usize>,
     /// What binds those of them that are bound, outermost first.
     pub around: Vec<Range>,
+    /// How near to the owner an agent must be to belong to it; empty: that does not follow.
+    pub near: Vec<Near>,
 }
 
 /// What an aggregate folds.

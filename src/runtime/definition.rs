@@ -4,8 +4,8 @@
 //! aggregate is a condition too: its comparisons stand before those of the guard, those of inner aggregates first.
 
 use crate::codegen::program::{
-    Atom, ClaimSystem, Condition, Frame, Guard, LinkUpdate, Near, PairTransition, Program, Quantified, Range,
-    Relation, Slot, TransitionSystem, Trigger,
+    Atom, ClaimKind, ClaimSystem, Condition, Frame, Guard, LinkUpdate, Near, PairTransition, Program,
+    Quantified, Range, Relation, Slot, TransitionSystem, Trigger,
 };
 use crate::runtime::fold::{self, Shared};
 use crate::runtime::population::Agents;
@@ -261,23 +261,30 @@ impl<'p> Definition<'p> {
         let Some(guard) = self.guard else { return };
         let mut found = Vec::new();
         if matches!(self.origin, Origin::Pair(_) | Origin::Link(_))
-            || !self.folds.is_empty()
             || self.n_rising > 0
             || !ranged(&guard.condition, &mut found)
+            || !self.folds.is_empty() && !self.are_ranged()
         {
             return;
         }
-        for (quantified, beyond) in found {
+        let quantified = found.into_iter().map(|(quantified, beyond)| {
             let Quantified { slot, ty, other, .. } = *quantified;
-            let beyond = matches!(*quantified.body, Condition::Atom(_)).then_some(beyond);
+            (Range { slot, ty, other }, quantified.near.as_slice(), &*quantified.body, beyond)
+        });
+        let folded = self.folds.iter().map(|&(number, _)| {
+            let fold = &self.frame.folds[number];
+            (fold.range, fold.near.as_slice(), &fold.filter.condition, false)
+        });
+        for (range, near, body, beyond) in quantified.chain(folded).collect::<Vec<_>>() {
+            let slot = range.slot;
+            let beyond = matches!(body, Condition::Atom(_)).then_some(beyond);
             let is_bound = |shape: &AtomShape| shape.binders.iter().any(|binder| binder.slot == slot);
             let atoms: Vec<usize> = (0..self.atoms.len()).filter(|&k| is_bound(&self.atoms[k])).collect();
             if atoms.iter().any(|&atom| self.comparisons[atom].relation == Relation::Crossing) {
                 self.nearby.clear();
                 return;
             }
-            let range = Range { slot, ty, other };
-            self.nearby.push(Nearby { range, near: &quantified.near, beyond, atoms });
+            self.nearby.push(Nearby { range, near, beyond, atoms });
         }
         for (number, nearby) in self.nearby.iter().enumerate() {
             for (place, &atom) in nearby.atoms.iter().enumerate() {
@@ -285,6 +292,22 @@ impl<'p> Definition<'p> {
             }
         }
         self.lay_out(agents);
+    }
+}
+
+impl Definition<'_> {
+    /// Whether all its aggregates have a range, and none stands in another. Those of properties are looked at along the way.
+    fn are_ranged(&self) -> bool {
+        let is_ranged = |&(number, _): &(usize, usize)| {
+            let fold = &self.frame.folds[number];
+            let reads_another = |&slot: &usize| matches!(self.frame.slots[slot], Slot::Fold { .. });
+            !fold.near.is_empty()
+                && !fold.reads.iter().any(reads_another)
+                && fold.filter.n_rising == 0
+                && !quantifies(&fold.filter.condition)
+        };
+        let is_property = matches!(self.origin, Origin::Claim(ClaimSystem { kind: ClaimKind::Property, .. }));
+        !is_property && self.folds.iter().all(is_ranged)
     }
 }
 

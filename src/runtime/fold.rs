@@ -97,6 +97,9 @@ fn is_for_all(condition: &Condition, test: &dyn Fn(FunctionId) -> bool) -> bool 
 /// Says whether the agent bound in the slots belongs to the aggregate of this number.
 pub type Belongs<'b> = dyn FnMut(usize, &mut Slots) -> bool + 'b;
 
+/// Who may belong to an aggregate: its number; none if that may be anybody of its type.
+pub type Among<'b> = dyn Fn(usize) -> Option<Vec<usize>> + 'b;
+
 /// The aggregates of a frame that a kernel reads, with their members. `own` are the agents that `other` leaves out; `shared`
 /// knows values, and is told new ones.
 pub fn gather<'f>(
@@ -105,7 +108,7 @@ pub fn gather<'f>(
     kernel: &Kernel,
     slots: &Slots,
     own: &[usize],
-    belongs: &mut Belongs<'_>,
+    (among, belongs): (&Among<'_>, &mut Belongs<'_>),
 ) -> Vec<Folded<'f>> {
     let mut all = Vec::new();
     for number in read_by(frame, kernel) {
@@ -119,7 +122,8 @@ pub fn gather<'f>(
         }
         let mut folded = Folded { fold, members: Vec::new(), still: None };
         let mut bound = slots.clone();
-        for &agent in &agents.of_type[fold.range.ty] {
+        let near = among(number);
+        for &agent in near.as_ref().unwrap_or(&agents.of_type[fold.range.ty]) {
             if fold.range.other && own.contains(&agent) {
                 continue;
             }
@@ -127,7 +131,8 @@ pub fn gather<'f>(
             agents.follow_links(frame, &mut bound);
             if belongs(number, &mut bound) {
                 let inner = fold.term.as_ref().map_or_else(Vec::new, |term| {
-                    gather(agents, (frame, shared), agents.program.kernel(term.value), &bound, own, belongs)
+                    let kernel = agents.program.kernel(term.value);
+                    gather(agents, (frame, shared), kernel, &bound, own, (among, belongs))
                 });
                 folded.members.push(Member { slots: bound.clone(), inner });
             }

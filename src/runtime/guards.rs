@@ -513,11 +513,11 @@ impl<'p> Guards<'p> {
 
     /// Whether an atom instance belongs to the filter of an aggregate.
     pub fn is_of_filter(&self, index: usize) -> bool {
-        if self.atoms[index].candidate.is_some() {
-            return false;
-        }
         let instance = self.atoms[index].instance;
         let definition = self.definition(instance);
+        if let Some((atom, _)) = self.atoms[index].candidate {
+            return (atom as usize) < definition.base;
+        }
         let offset = index - self.instances[instance as usize].atoms as usize;
         definition.atoms.get(definition.base).map_or(definition.base > 0, |first| offset < first.first)
     }

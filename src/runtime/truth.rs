@@ -122,10 +122,15 @@ impl<'p> Truths<'_, 'p> {
         let roots = self.guards.roots(instance);
         let frame = definition.frame;
         let told = (frame, Some(&definition.shared));
-        fold::gather(self.agents, told, kernel, slots, &roots, &mut |number, slots| {
+        let among = |number: usize| {
+            let candidates = self.guards.candidates_at(instance, frame.folds[number].range.slot)?;
+            Some(candidates.iter().map(|candidate| candidate.agent as usize).collect())
+        };
+        let mut belongs = |number: usize, slots: &mut Slots| {
             let at = At { instance, base: definition.base_of(number), side };
             self.condition(at, &frame.folds[number].filter.condition, slots)
-        })
+        };
+        fold::gather(self.agents, told, kernel, slots, &roots, (&among, &mut belongs))
     }
 
     /// The lowest agent of a quantifier's range for which its body is `wanted`.
@@ -302,10 +307,11 @@ pub fn gather<'f>(
     slots: &Slots,
     own: &[usize],
 ) -> Vec<Folded<'f>> {
-    fold::gather(agents, (frame, None), kernel, slots, own, &mut |number, slots| {
+    let mut belongs = |number: usize, slots: &mut Slots| {
         let filter = &frame.folds[number].filter;
         test_condition(agents, present, filter, frame, &filter.condition, slots, own)
-    })
+    };
+    fold::gather(agents, (frame, None), kernel, slots, own, (&|_| None, &mut belongs))
 }
 
 /// The single output of a kernel that reads these aggregates, on the rows of the present instant.

@@ -6,11 +6,13 @@
 use crate::base::Span;
 use crate::calculus::bounds::Bounds;
 use crate::calculus::lint::Warning;
-use crate::calculus::lint::effects::guard;
+use crate::calculus::lint::effects::{guard, nodes};
 use crate::calculus::lint::oneself::first_atom;
 use crate::calculus::lint::truth::{Truth, truth};
 use crate::calculus::reader::Reader;
-use crate::calculus::system::{Condition, Frame, Guard, PairTransition, Quantified, System};
+use crate::calculus::system::{
+    Condition, Frame, Guard, LinkUpdate, PairTransition, Quantified, System, Whither,
+};
 
 /// So many pairs are nobody's concern.
 const PAIRS_MAX: usize = 100_000;
@@ -30,11 +32,16 @@ pub fn conditions(system: &System, bounds: &Bounds, found: &mut Vec<Warning>) {
             if let Some(guard) = guard(transition) {
                 let owner = Owner { frame: &transition.frame, guard, span: transition.span };
                 census.quantifiers(&owner, &guard.condition, found);
+                census.aggregates(&owner, found);
             }
         }
         for claim in ty.modes.iter().flat_map(|mode| &mode.claims) {
             let owner = Owner { frame: &claim.frame, guard: &claim.violation, span: claim.span };
             census.quantifiers(&owner, &claim.violation.condition, found);
+            census.aggregates(&owner, found);
+        }
+        for update in ty.links.iter().flat_map(|link| &link.updates) {
+            census.nearest(update, found);
         }
     }
 }
@@ -65,6 +72,32 @@ impl Census<'_> {
             found.push(Warning::AllPairs { name: transition.label.clone(), span, n_pairs });
         }
         self.quantifiers(&owner, &guard.condition, found);
+        self.aggregates(&owner, found);
+    }
+
+    /// The aggregates whose members move, or are chosen by what moves.
+    fn aggregates(&self, owner: &Owner, found: &mut Vec<Warning>) {
+        let read = self.system.graph.reach(&nodes(self.system, owner.guard));
+        let is_read = |slot: usize| read.iter().any(|&id| self.system.graph.node(id).slot() == Some(slot));
+        for fold in owner.frame.folds.iter().filter(|fold| is_read(fold.slot)) {
+            let n_pairs = self.pairs([owner.frame.slots[0].ty(), fold.range.ty]);
+            let changes = fold.moves || !fold.filter.atoms.is_empty();
+            if fold.near.is_empty() && changes && n_pairs > PAIRS_MAX {
+                let span = first_atom(&fold.filter, &fold.filter.condition).unwrap_or(owner.span);
+                let name = owner.frame.slots[fold.slot].name().to_string();
+                found.push(Warning::AllPairs { name, span, n_pairs });
+            }
+        }
+    }
+
+    /// Who is nearest is found among all.
+    fn nearest(&self, update: &LinkUpdate, found: &mut Vec<Warning>) {
+        let Whither::Nearest { range, .. } = &update.target else { return };
+        let n_pairs = self.pairs([update.frame.slots[0].ty(), range.ty]);
+        if n_pairs > PAIRS_MAX {
+            let name = update.label.clone();
+            found.push(Warning::AllAsked { name, span: update.span, n_pairs });
+        }
     }
 
     fn quantifiers(&self, owner: &Owner, condition: &Condition, found: &mut Vec<Warning>) {

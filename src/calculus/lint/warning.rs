@@ -21,6 +21,8 @@ pub enum Warning {
     Oneself { name: String, ty: String, span: Span, holds: bool },
     /// A condition over two agents that says nothing about how near they are, and many pairs of them; its label or the bound name.
     AllPairs { name: String, span: Span, n_pairs: usize },
+    /// HY0614: who is nearest is found among all.
+    AllAsked { name: String, span: Span, n_pairs: usize },
 }
 
 impl From<Warning> for Diagnostic {
@@ -77,6 +79,12 @@ impl From<Warning> for Diagnostic {
                     .label(span, "may be true for two that are far apart")
                     .note("near pairs alone are looked at where a condition bounds a difference of states")
                     .help("say how near they have to be: `... and abs(a.x - b.x) <= 10`")
+            }
+            Warning::AllAsked { name, span, n_pairs } => {
+                Diagnostic::warning("HY0614", format!("`{name}` is looked at for all {n_pairs} pairs of agents"))
+                    .label(span, "the nearest is found among all")
+                    .note("near pairs alone are looked at by `exists`, `count` and the like that bound a difference of states")
+                    .help("ask for somebody in a range, if that will do: `exists o in other Car: abs(o.x - x) <= 10`")
             }
         }
     }

@@ -43,6 +43,41 @@ fn who_looks_around_looks_at_who_is_near() {
     }
 }
 
+/// The same of who counts, or adds up, those who are near: where they come and go, are born and die, and are put elsewhere.
+#[test]
+fn who_counts_those_who_are_near_looks_at_who_is_near() {
+    let text = |side: u32, more: &str, end: f64| {
+        format!(
+            "{HASH}
+             agent Pod(i: int) {{
+               state x = 4*(mod(i, {side}) + hash(i, 0)), y = 4*(floor(i/{side}) + hash(i, 1)), th = 6.28*hash(i, 2)
+               discrete crowded: int = 0, drawn: int = 0, close: int = 0, w = 1 + hash(i, 3)
+               flow {{ x' = 2*cos(th)  y' = 2*sin(th)  th' = 0.3 }}
+               many: when (count o in other Pod where (o.x - x)^2 + (o.y - y)^2 <= 4) >= 2 {{ crowded := crowded + 1 }}
+               pull: when (sum o in other Pod where hypot(o.x - x, o.y - y) <= 3: o.w*(o.x - x)) >= 1.5 {{ drawn := drawn + 1 }}
+               tight: when (min o in other Pod where abs(o.x - x) <= 1 and abs(o.y - y) <= 1: o.w) <= 1.4 {{ close := close + 1 }}
+               {more} }}
+             system {{ pods = Pod[{}](i = index) }}  run {{ until {end} }}",
+            side * side
+        )
+    };
+    let run = |side: u32| by(&text(side, "", 2.0), Form::Fast, 1e-6);
+    let (few, many) = (run(6), run(18));
+    for transition in ["Pod.many", "Pod.pull", "Pod.tight"] {
+        assert!(many.times(transition).len() > 100, "{transition}");
+    }
+    let per_agent = |run: &crate::harness::Run, n: f64| {
+        [run.stats.guard_evaluations as f64 / n, run.stats.pairs_listed as f64 / n]
+    };
+    for (few, many) in per_agent(&few, 36.0).into_iter().zip(per_agent(&many, 324.0)) {
+        assert!(many < 2.0 * few, "{few} an agent of 36, {many} an agent of 324");
+    }
+    let more = "jump: every 0.3 + 0.1*hash(i, 4) { x := 28*hash(i, time)  w := 1 + hash(i, 5*time) }
+                bud: every 0.7 when mod(i, 9) == 0 { create Pod(i = i + 50, x = x + 0.3, y = y) }
+                die: after 0.5 + hash(i, 6) when mod(i, 5) == 0 { destroy self }";
+    same(&text(7, more, 1.5), 200);
+}
+
 #[test]
 fn a_ring_road_whose_end_is_its_begin() {
     let both = alike(
