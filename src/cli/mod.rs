@@ -18,6 +18,7 @@ mod warnings;
 mod sarif;
 mod refusal;
 mod algorithm;
+mod landmarks;
 mod watch;
 mod run;
 mod report;

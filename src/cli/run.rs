@@ -136,6 +136,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
             recording: &recording,
             columns: &watched.columns,
             plane: watched.plane,
+            landmarks: &watched.landmarks,
             summary: &summary,
         };
         write_whole(sink, &page(&scene))?;

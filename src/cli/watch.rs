@@ -1,10 +1,11 @@
 //! What is sampled of a run for its page: all agents, so often that the page stays small. It changes no event (rule 16).
 
 use super::Refused;
+use super::landmarks::{Reach, Wall, reaches, walls};
 use crate::base::Span;
 use crate::codegen::program::{Program, Record, VarRef};
 use crate::model::ir::{Model, Type, Variable};
-use crate::picture::{Shown, Varies};
+use crate::picture::{Landmarks, Shown, Varies};
 
 /// How many samples there are at least and at most, and about how many numbers in all.
 const SAMPLES_LEAST: f64 = 100.0;
@@ -13,10 +14,11 @@ const NUMBERS: f64 = 2e6;
 /// A whole number that differs from agent to agent, with no more values than these, is a place to be drawn at (a lane).
 const PLACES: usize = 12;
 
-/// What is sampled for a page: the columns of the record, which of them make the plane.
+/// What is sampled for a page: the columns of the record, which of them make the plane, and what is drawn there besides.
 pub(super) struct Watched {
     pub(super) columns: Vec<Shown>,
     pub(super) plane: [Option<usize>; 2],
+    pub(super) landmarks: Landmarks,
 }
 
 /// A record of all agents, to be added to those of the model, and what it holds.
@@ -28,6 +30,7 @@ pub(super) fn watch(model: &Model, program: &Program) -> Result<(Record, Watched
     let n_samples = (NUMBERS / n_numbers).clamp(SAMPLES_LEAST, SAMPLES_MOST);
     let variables =
         (0..model.types.len()).map(|ty| found.iter().map(|column| column.variables[ty]).collect()).collect();
+    let landmarks = landmarks(program, &found);
     let shown: Vec<Shown> = found.into_iter().map(|column| column.shown).collect();
     let record = Record {
         agents: (0..n_agents).collect(),
@@ -38,7 +41,20 @@ pub(super) fn watch(model: &Model, program: &Program) -> Result<(Record, Watched
         file: None,
         span: Span::default(),
     };
-    Ok((record, Watched { plane: plane(&shown), columns: shown }))
+    Ok((record, Watched { plane: plane(&shown), columns: shown, landmarks }))
+}
+
+fn landmarks(program: &Program, columns: &[Found]) -> Landmarks {
+    let column_of = |ty: usize, state: usize| {
+        columns.iter().position(|column| column.variables[ty] == Some(VarRef::State(state)))
+    };
+    let wall = |Wall { ty, state, value }: Wall| Some((column_of(ty, state)?, value));
+    let reach =
+        |Reach { ty, states: [a, b], within }: Reach| Some(([column_of(ty, a)?, column_of(ty, b)?], within));
+    Landmarks {
+        walls: walls(program).into_iter().filter_map(wall).collect(),
+        ranges: reaches(program).into_iter().filter_map(reach).collect(),
+    }
 }
 
 /// A column of the page's record.

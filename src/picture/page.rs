@@ -33,8 +33,19 @@ pub struct Scene<'a> {
     pub columns: &'a [Shown],
     /// The columns that are shown across and up; none: time.
     pub plane: [Option<usize>; 2],
+    /// What is drawn there besides.
+    pub landmarks: &'a Landmarks,
     /// How it ended and what it took, as text.
     pub summary: &'a str,
+}
+
+/// What a model says of the plane: columns are those of the record, numbers are in their units.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Landmarks {
+    /// Where a column alone makes a guard true.
+    pub walls: Vec<(usize, f64)>,
+    /// How near two agents have to be in two columns for an interaction.
+    pub ranges: Vec<([usize; 2], f64)>,
 }
 
 /// A column of the record, for people.
@@ -106,6 +117,8 @@ fn data(scene: &Scene<'_>) -> Value {
         "nEvents": recording.n_events,
         "transitions": recording.transitions,
         "modePaths": recording.paths,
+        "walls": scene.landmarks.walls,
+        "ranges": scene.landmarks.ranges,
         "across": across,
         "up": up,
     })

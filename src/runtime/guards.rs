@@ -522,12 +522,19 @@ impl<'p> Guards<'p> {
         definition.atoms.get(definition.base).map_or(definition.base > 0, |first| offset < first.first)
     }
 
-    /// The numbers of an instance's atom instances.
+    /// The numbers of an instance's atom instances, those of the filters of aggregates before those that read these.
     pub fn atoms_of(&self, instance: u32) -> AtomNumbers {
         let first = self.instances[instance as usize].atoms as usize;
-        let own = first..first + self.definition(instance).n_atoms;
-        let mut ranges = SmallVec::from_elem(own, 1);
-        ranges.extend(self.candidate_ranges(instance));
+        let definition = self.definition(instance);
+        let own = first..first + definition.n_atoms;
+        let mut ranges: SmallVec<[std::ops::Range<usize>; 1]> = SmallVec::new();
+        if definition.folds.is_empty() {
+            ranges.push(own);
+            ranges.extend(self.candidate_ranges(instance));
+        } else {
+            ranges.extend(self.candidate_ranges(instance));
+            ranges.push(own);
+        }
         ranges.into_iter().flatten()
     }
 }

@@ -58,6 +58,46 @@ fn a_page_holds_the_events_and_asks_for_nothing() {
     assert!(page.contains("default-src 'none'"));
 }
 
+/// The walls of the bumper problem are at H = 5 ceil(sqrt(20)) - 1/2, and two cars touch at R = 1.
+#[test]
+fn a_page_shows_walls_and_ranges() {
+    let folder = tempfile::tempdir().unwrap();
+    hyc(folder.path(), &["report", model("bumper.hy").to_str().unwrap(), "-q", "--until", "1"]);
+    let data = data_of(&fs::read_to_string(folder.path().join("bumper.html")).unwrap());
+    let column = |name: &str| {
+        let labels =
+            data["columns"].as_array().unwrap().iter().map(|column| column["label"].as_str().unwrap());
+        labels.into_iter().position(|label| label.starts_with(name)).unwrap() as u64
+    };
+    let walls = data["walls"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|wall| (wall[0].as_u64().unwrap(), wall[1].as_f64().unwrap()));
+    let walls: Vec<(u64, f64)> = walls.collect();
+    for wall in [("x, ", -24.5), ("x, ", 24.5), ("y, ", -24.5), ("y, ", 24.5)] {
+        assert!(walls.contains(&(column(wall.0), wall.1)), "{wall:?} of {walls:?}");
+    }
+    assert_eq!(walls.len(), 4);
+    let ranges = data["ranges"].as_array().unwrap();
+    assert_eq!(ranges.len(), 1);
+    assert_eq!(ranges[0][0], serde_json::json!([column("x, "), column("y, ")]));
+    assert!((ranges[0][1].as_f64().unwrap() - 1.0).abs() < 1e-6);
+    // a gap to another, and a guard with parameters that differ from agent to agent, are no walls
+    fs::write(
+        folder.path().join("a.hy"),
+        "agent A(c: real) { state x = 0, y = 0  flow { x' = 1  y' = 0 }
+           a: when x >= c { }  b: when x + y >= 3 { }  d: when 2*x - 1 >= time { }
+           e: when exists o in other A: o.x > x + 9 { }  f: when 3*y <= -6 { } }
+         system { a = A(c = 1)  b = A(c = 2) }  run { until 1 }",
+    )
+    .unwrap();
+    hyc(folder.path(), &["report", "a.hy", "-q"]);
+    let data = data_of(&fs::read_to_string(folder.path().join("a.html")).unwrap());
+    assert_eq!(data["walls"], serde_json::json!([[1, -2.0]]));
+    assert_eq!(data["ranges"], serde_json::json!([]));
+}
+
 #[test]
 fn a_report_beside_a_run_changes_no_event() {
     let folder = tempfile::tempdir().unwrap();

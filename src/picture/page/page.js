@@ -63,7 +63,11 @@ function bounds(column) {
   if (column < 0) return [begin, end];
   let low = Infinity, high = -Infinity;
   for (const x of values[column]) if (Number.isFinite(x)) { if (x < low) low = x; if (x > high) high = x; }
-  return low > high ? [0, 1] : [low, high];
+  if (low > high) return [0, 1];
+  // walls that are not far away are part of the picture
+  const size = high - low || 1;
+  for (const [wall, at] of data.walls) if (wall === column && at > low - size && at < high + size) { low = Math.min(low, at); high = Math.max(high, at); }
+  return [low, high];
 }
 function fit() {
   const [x0, x1] = bounds(across), [y0, y1] = bounds(up);
@@ -121,6 +125,12 @@ function drawPlane() {
   for (const y of ticks(low, high, box.height/70, data.columns[up]?.whole ? 1 : 0)) {
     pen.beginPath(); pen.moveTo(0, Y(y)); pen.lineTo(box.width, Y(y)); pen.stroke(); pen.fillText(number(y), 3, Y(y) - 3);
   }
+  pen.strokeStyle = ink; pen.lineWidth = 1.2; pen.globalAlpha = 0.55; pen.setLineDash([6, 4]);
+  for (const [column, at] of data.walls) {
+    if (column === across) { pen.beginPath(); pen.moveTo(X(at), 0); pen.lineTo(X(at), box.height); pen.stroke(); }
+    if (column === up) { pen.beginPath(); pen.moveTo(0, Y(at)); pen.lineTo(box.width, Y(at)); pen.stroke(); }
+  }
+  pen.setLineDash([]); pen.globalAlpha = 1;
   if (!nTimes) return;
   const k = sampleAt(now), share = k + 1 < nTimes ? (now - times[k])/(times[k + 1] - times[k]) : 0;
   const size = nAgents <= 60 ? 6 : nAgents <= 400 ? 4.5 : 3;
@@ -143,6 +153,14 @@ function drawPlane() {
     pen.globalAlpha = 1;
   }
   const placed = agent => [X(valueAt(across, agent, k, share)), Y(valueAt(up, agent, k, share))];
+  // two that may meet touch with these
+  const reach = data.ranges.filter(([pair]) => pair.includes(across) && pair.includes(up)).map(([, within]) => within/2*view.sx);
+  pen.strokeStyle = faint; pen.lineWidth = 1;
+  for (let agent = 0; agent < nAgents; agent++) for (const radius of reach) {
+    const [x, y] = placed(agent);
+    if (!(radius > size) || !(x > -radius && x < box.width + radius && y > -radius && y < box.height + radius)) continue;
+    pen.beginPath(); pen.arc(x, y, radius, 0, 7); pen.stroke();
+  }
   for (let agent = 0; agent < nAgents; agent++) {
     const [x, y] = placed(agent);
     if (!(x > -20 && x < box.width + 20 && y > -20 && y < box.height + 20)) continue;
@@ -387,5 +405,7 @@ document.addEventListener("keydown", event => {
   action();
 });
 addEventListener("resize", () => { drawPlane(); select(selected); });
-list(); select(few); fit(); setTime(begin);
+// `report.html#30` opens at 30 s
+const asked = Number(location.hash.slice(1));
+list(); select(few); fit(); setTime(location.hash && Number.isFinite(asked) ? asked : begin);
 })();

@@ -541,3 +541,25 @@ fn a_birth_in_the_instant_in_which_somebody_comes_and_goes() {
     );
     assert_eq!(both.fast.times_of("B.far", "b"), [0.0, 0.0]);
 }
+
+/// Who belongs to a sum is known before what the sum comes to: when it is armed, and in the micro-step of a write.
+#[test]
+fn a_sum_of_those_who_are_near_from_the_first_instant_on() {
+    let run = alike(
+        "agent A { state x = 0.5*index + 0.5  flow { x' = 0 }
+           g: when (sum o in other A where abs(o.x - x) <= 2: o.x) <= 0.4 { } }
+         system { a = A[2]() }  run { until 0.5 }",
+        0,
+    );
+    assert!(run.fast.events.is_empty());
+    let run = alike(
+        "agent A(p: real) { state x = 2, y = 4  discrete n: int = 0  flow { x' = 0  y' = 0 }
+           undo: when y <= -3 and time >= 1.5 and p == 0.5 { y := -y }
+           near: when (sum o in other A where abs(o.y - y) <= 1: o.x) >= 1 { n := n + 1 }
+           tk: every p { y := -y } }
+         system { a = A(p = 0.5)  b = A(p = 1.25) }  run { until 1.6 }",
+        4,
+    );
+    let near = run.fast.events.iter().filter(|event| event.transition == "A.near" && event.time == 1.5);
+    assert_eq!(near.map(|event| event.micro).collect::<Vec<_>>(), [1]);
+}
