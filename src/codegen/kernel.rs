@@ -81,6 +81,8 @@ pub struct Reads {
     pub columns: Vec<(usize, usize)>,
     /// The states that are read: slot and column, rising.
     pub states: Vec<(usize, usize)>,
+    /// The states of which they, their rates or their second rates are read: slot and column, rising.
+    pub moving: Vec<(usize, usize)>,
 }
 
 impl Reads {
@@ -92,16 +94,20 @@ impl Reads {
                 Instruction::Time { .. } => reads.time = true,
                 Instruction::Load { slot, row, column, .. } => {
                     reads.include(slot as usize, row, column as usize + 1);
+                    let place = (slot as usize, column as usize);
                     match row {
-                        Row::Aux => reads.columns.push((slot as usize, column as usize)),
-                        Row::States => reads.states.push((slot as usize, column as usize)),
-                        Row::Rates | Row::Accelerations => {}
+                        Row::Aux => reads.columns.push(place),
+                        Row::States => {
+                            reads.states.push(place);
+                            reads.moving.push(place);
+                        }
+                        Row::Rates | Row::Accelerations => reads.moving.push(place),
                     }
                 }
                 Instruction::Apply { .. } => {}
             }
         }
-        for columns in [&mut reads.columns, &mut reads.states] {
+        for columns in [&mut reads.columns, &mut reads.states, &mut reads.moving] {
             columns.sort_unstable();
             columns.dedup();
         }

@@ -111,6 +111,11 @@ impl Stepper {
         }
     }
 
+    /// Whether the method is chosen by what the flow is like.
+    pub fn has_choice(&self) -> bool {
+        matches!(self.methods, Methods::Automatic(_))
+    }
+
     /// Whether the flow of an agent in a mode was stiff when it last moved by it.
     pub fn is_stiff(&self, agent: usize, mode: usize) -> bool {
         self.stiff.contains(&(agent, mode))
@@ -465,6 +470,7 @@ fn shorten(agents: &mut Agents<'_>, group: &mut Group, t: f64) {
     }
     for &member in &group.members {
         agents.agents[member].segment.cut(t);
+        agents.divert(member);
     }
     group.integration.restart();
     group.version += 1;

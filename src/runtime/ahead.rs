@@ -38,6 +38,11 @@ impl Ahead {
         self.0.iter().flat_map(|ways| ways.iter()).map(|way| way.segment.end)
     }
 
+    /// The trajectory of each step.
+    pub fn segments(&self) -> impl Iterator<Item = &Segment> {
+        self.0.iter().flat_map(|ways| ways.iter()).map(|way| &way.segment)
+    }
+
     /// Takes the first step.
     pub fn pop(&mut self) -> Option<Way> {
         self.0.as_mut()?.pop_front()

@@ -10,7 +10,7 @@ use crate::runtime::engine::{Due, Engine};
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::fold::Folded;
 use crate::runtime::guards::{AtomState, Origin, closed, inside};
-use crate::runtime::population::{ABSENT, Slots};
+use crate::runtime::population::{ABSENT, Agent, Slots};
 use crate::runtime::present::{Depth, depth_read};
 use crate::runtime::sleep::Regard;
 use crate::runtime::solve::roots::{AT_TURN, Direction, direction};
@@ -188,6 +188,9 @@ impl<'p> Engine<'p, '_> {
         state.truth = truth;
         state.touched = touched;
         state.rooted = enters || rule == Rule::Woken && before.rooted && unchanged;
+        if state.touched || state.rooted {
+            self.guards.roused.push(index as u32);
+        }
         let kept = unchanged && before.rooted;
         self.recertify(index, if kept { before.certified.max(time) } else { time });
         self.guards.atoms[index].settled = !(unchanged && before.slack == 0.0);
@@ -219,6 +222,7 @@ impl<'p> Engine<'p, '_> {
                     }
                 };
                 self.guards.atoms[index].touched |= before.touched || touched;
+                self.guards.roused.push(index as u32);
             }
         }
     }
@@ -228,6 +232,12 @@ impl<'p> Engine<'p, '_> {
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
         let is_written = |agent: usize| written.before.contains_key(&agent);
         if atom.slots.iter().any(|&slot| is_written(slots[slot])) || self.leads_elsewhere(index, written) {
+            return true;
+        }
+        // What is written may be what a flow reads: then the rates are others.
+        let follows_anew = |&slot: &usize| written.restarted.contains(&slots[slot]);
+        if depth_read(self.program.kernel(atom.value)) != Depth::States && atom.slots.iter().any(follows_anew)
+        {
             return true;
         }
         let quantified = &self.guards.definition(self.guards.atoms[index].instance).quantified;
@@ -371,7 +381,8 @@ impl<'p> Engine<'p, '_> {
                 }
             }
         }
-        let mut concerned: Vec<usize> = written.before.keys().chain(&written.restarted).copied().collect();
+        let noticed = written.before.keys().filter(|&&agent| self.is_noticed(agent, written));
+        let mut concerned: Vec<usize> = noticed.chain(&written.restarted).copied().collect();
         concerned.sort_unstable();
         concerned.dedup();
         armed.extend(self.relist(&concerned, &written.born)?);
@@ -423,6 +434,12 @@ impl<'p> Engine<'p, '_> {
             self.note_rising(instance);
         }
         Ok(woken)
+    }
+
+    /// Whether what was written to an agent may be of interest to a guard.
+    fn is_noticed(&self, agent: usize, written: &Written) -> bool {
+        let Agent { ty, aux, .. } = &self.agents.agents[agent];
+        written.relinked.contains(&agent) || self.guards.noticed.any(*ty, &written.before[&agent].1, aux)
     }
 
     /// The atoms of an instance that may read one of these agents, or reach one by links: all, if it is one of its own; else

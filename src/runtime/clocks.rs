@@ -268,7 +268,7 @@ impl<'p, 'o> Clocks<'p, 'o> {
         }
         let state = &mut self.engine.guards.atoms[index];
         (state.truth, state.slack) = (false, 0.0);
-        self.engine.calm(instance);
+        self.engine.calm(&[instance]);
         if let Some(audit) = &mut self.audit {
             audit.settle(&self.engine, index, self.engine.present.time);
         }

@@ -20,12 +20,10 @@ struct Place {
     place: u32,
     /// Whether it runs ahead now.
     cold: bool,
-    /// Up to where the steps have been counted that it takes when it runs ahead no more, s.
-    counted: f64,
 }
 
 /// The place of an agent that is in no herd.
-const NOWHERE: Place = Place { herd: NONE, place: 0, cold: false, counted: f64::NEG_INFINITY };
+const NOWHERE: Place = Place { herd: NONE, place: 0, cold: false };
 
 const NONE: u32 = u32::MAX;
 
@@ -38,6 +36,8 @@ pub struct Cold<'p> {
     of_mode: Vec<Vec<Option<u32>>>,
     /// By agent; empty if nobody is ever cold.
     places: Vec<Place>,
+    /// By agent, up to where the steps have been counted that it takes when it runs ahead no more, s.
+    counted: Vec<f64>,
 }
 
 impl<'p> Cold<'p> {
@@ -48,19 +48,19 @@ impl<'p> Cold<'p> {
         let mut herd_of = |ty: usize, mode: usize| {
             let flow = program.types[ty].modes[mode].flow.as_ref()?;
             let tape = program.series[ty][mode].as_ref()?;
-            let inputs = program.kernel(flow.rates).reads().columns.iter();
             if !is_alone(flow) || tape.n_states > STATES_MAX || tape.n_states == 0 {
                 return None;
             }
             let leaps = Leaps { tape, order, accuracy, stop };
-            herds.push(Herd::new(leaps, inputs.map(|&(_, column)| column).collect()));
+            herds.push(Herd::new(leaps));
             Some(herds.len() as u32 - 1)
         };
         let modes = |ty: usize| 0..program.types[ty].modes.len();
         let of_mode: Vec<Vec<Option<u32>>> =
             (0..program.types.len()).map(|ty| modes(ty).map(|mode| herd_of(ty, mode)).collect()).collect();
-        let places = if herds.is_empty() { Vec::new() } else { vec![NOWHERE; n_agents] };
-        Self { herds, of_mode, places }
+        let n_places = if herds.is_empty() { 0 } else { n_agents };
+        let counted = vec![f64::NEG_INFINITY; n_places];
+        Self { herds, of_mode, places: vec![NOWHERE; n_places], counted }
     }
 
     /// Whether anybody can be cold.
@@ -71,6 +71,11 @@ impl<'p> Cold<'p> {
     /// Whether agents of a type can be cold in a mode.
     pub fn may_be(&self, ty: usize, mode: usize) -> bool {
         self.is_used() && self.of_mode[ty][mode].is_some()
+    }
+
+    /// Whether agents of a type can be cold in any mode.
+    pub fn may_ever_be(&self, ty: usize) -> bool {
+        self.is_used() && self.of_mode[ty].iter().any(Option::is_some)
     }
 
     /// Whether an agent is cold.
@@ -148,17 +153,17 @@ impl<'p> Cold<'p> {
 
     /// The steps that were kept of an agent are not its steps any more.
     pub fn void_track(&mut self, agent: usize) {
-        if let Some(Place { herd, place, counted, .. }) = self.places.get_mut(agent)
-            && *herd != NONE
+        if let Some(&Place { herd, place, .. }) = self.places.get(agent)
+            && herd != NONE
         {
-            self.herds[*herd as usize].tracks.void(*place as usize);
-            *counted = f64::NEG_INFINITY;
+            self.herds[herd as usize].tracks.void(place as usize);
+            self.counted[agent] = f64::NEG_INFINITY;
         }
     }
 
     /// Whether a step of an agent that ends at `end` was counted when the agent ran ahead.
     pub fn has_counted(&self, agent: usize, end: f64) -> bool {
-        self.places.get(agent).is_some_and(|place| end <= place.counted)
+        self.counted.get(agent).is_some_and(|&counted| end <= counted)
     }
 
     /// The step that was kept of an agent, not cold now, from `t` on, and the states at its end.
@@ -227,7 +232,8 @@ impl<'p> Cold<'p> {
         if self.places[agent].herd != herd {
             self.leave(agent);
             let place = self.herds[herd as usize].push(agent) as u32;
-            self.places[agent] = Place { herd, place, ..NOWHERE };
+            self.places[agent] = Place { herd, place, cold: false };
+            self.counted[agent] = f64::NEG_INFINITY;
         }
         let place = &mut self.places[agent];
         place.cold = true;
@@ -239,7 +245,7 @@ impl<'p> Cold<'p> {
         let place = &mut self.places[agent];
         let herd = &mut self.herds[place.herd as usize];
         place.cold = false;
-        place.counted = herd.now(place.place as usize).0;
+        self.counted[agent] = herd.now(place.place as usize).0;
         herd.halt(place.place as usize);
     }
 
@@ -247,8 +253,10 @@ impl<'p> Cold<'p> {
     pub fn admit(&mut self, place: usize) {
         if place == self.places.len() {
             self.places.push(NOWHERE);
+            self.counted.push(f64::NEG_INFINITY);
         }
         self.places[place] = NOWHERE;
+        self.counted[place] = f64::NEG_INFINITY;
     }
 
     /// Takes an agent out that is not cold.
@@ -276,14 +284,15 @@ impl<'p> Cold<'p> {
         (ty, leaps.order as u64 + 1, leaps.tape.operations(leaps.order) + leaps.tape.operations(1))
     }
 
-    /// Advances all cold agents to `until` or beyond; those that could go no further are told. Their ways stay known from
-    /// `from` on.
-    pub fn advance(&mut self, from: f64, until: f64, tell: &mut dyn FnMut(usize)) -> Vec<u64> {
+    /// Advances all cold agents to `until` or beyond; those are told that could go no further, and those of whom it should be
+    /// looked at whether their flow is stiff (true). Their ways stay known from `from` on.
+    pub fn advance(&mut self, from: f64, until: f64, tell: &mut dyn FnMut(usize, bool)) -> Vec<u64> {
         let mut steps = Vec::with_capacity(self.herds.len());
         for herd in &mut self.herds {
-            let Advanced { steps: taken, refused } = herd.advance(from, until);
+            let Advanced { steps: taken, refused, unlooked } = herd.advance(from, until);
             steps.push(taken);
-            refused.into_iter().for_each(|place| tell(herd.agents[place] as usize));
+            refused.into_iter().for_each(|place| tell(herd.agents[place] as usize, false));
+            unlooked.into_iter().for_each(|place| tell(herd.agents[place] as usize, true));
         }
         steps
     }

@@ -7,6 +7,7 @@ use smallvec::{SmallVec, smallvec};
 use crate::codegen::kernel::{AgentBox, AgentView};
 use crate::codegen::program::{Atom, FunctionId};
 use crate::math::Interval;
+use crate::runtime::flow_rates::{rate_ranges, rates_at};
 use crate::runtime::fold::{self, Folded};
 use crate::runtime::population::{ABSENT, Agents, Slots};
 use crate::runtime::present::{Boxes, Depth, Views};
@@ -51,6 +52,8 @@ pub struct AtomCurve<'a, 'p> {
     interrupt: Option<&'a AtomicBool>,
     rows: &'a mut CurveRows,
     width: usize,
+    /// Whether the source reads rates (`x'`): they are those of the flow.
+    by_flow: bool,
 }
 
 impl<'a, 'p> AtomCurve<'a, 'p> {
@@ -70,7 +73,8 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
             rows.numbers.resize(total, 0.0);
             rows.boxes.resize(total, Interval::WHOLE);
         }
-        Self { agents, atom, slots, folds, involved, own: None, interrupt: None, rows, width }
+        let by_flow = fold::depth(agents.program, agents.program.kernel(atom.value), folds) != Depth::States;
+        Self { agents, atom, slots, folds, involved, own: None, interrupt: None, rows, width, by_flow }
     }
 
     /// The same with these auxiliary columns of self.
@@ -89,7 +93,11 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
         for (k, &agent) in self.involved.iter().enumerate() {
             let (x, rest) = self.rows.numbers[3 * width * k..3 * width * (k + 1)].split_at_mut(width);
             let (dx, ddx) = rest.split_at_mut(width);
+            let n = agents.agents[agent].states.len();
             agents.agents[agent].segment.jet(t, x, dx, ddx);
+            if self.by_flow {
+                rates_at(agents, agent, t, &mut dx[..n], &mut ddx[..n]);
+            }
         }
         let row = |agent: usize| {
             let Ok(k) = self.involved.binary_search(&agent) else {
@@ -116,13 +124,27 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
 
     /// Bounds of the jet of an atom with aggregates.
     fn folded_range(&mut self, time: Interval) -> [Interval; 3] {
+        let agents = self.agents;
+        for (k, &agent) in self.involved.iter().enumerate() {
+            let segment = &agents.agents[agent].segment;
+            for state in 0..agents.agents[agent].states.len() {
+                let jet = segment.jet_range(state, time.lo, time.hi);
+                put(&mut self.rows.boxes, self.width, (k, state), jet);
+            }
+        }
+        let mut out = [Interval::WHOLE; 3];
+        self.put_flow(time, Interval::hull);
+        self.fold_rows(self.atom.rates, Depth::Accelerations, time, &mut out);
+        if self.put_flow(time, |_, of_flow| of_flow) {
+            self.fold_rows(self.atom.value, Depth::States, time, &mut out);
+        }
+        out
+    }
+
+    /// A function with aggregates over the rows of those involved.
+    fn fold_rows(&mut self, function: FunctionId, depth: Depth, time: Interval, out: &mut [Interval]) {
         let (agents, width) = (self.agents, self.width);
         let CurveRows { boxes, registers, absent, absent_box, .. } = &mut *self.rows;
-        for (k, &agent) in self.involved.iter().enumerate() {
-            let (x, rest) = boxes[3 * width * k..3 * width * (k + 1)].split_at_mut(width);
-            let (dx, ddx) = rest.split_at_mut(width);
-            agents.agents[agent].segment.jet_range(time.lo, time.hi, x, dx, ddx);
-        }
         let row = |agent: usize| {
             let Ok(k) = self.involved.binary_search(&agent) else {
                 return AgentBox::absent(absent_box, absent);
@@ -135,16 +157,21 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
                 aux: &agents.agents[agent].aux,
             }
         };
-        let depth = Depth::Accelerations;
         let leaves = fold::leaf_ranges(agents.program, self.folds, depth, time, registers, &row);
-        let mut out = [Interval::WHOLE; 3];
-        let kernel = agents.program.kernel(self.atom.rates);
+        let kernel = agents.program.kernel(function);
         let mut boxes = fold::boxes(self.slots, &leaves, &row);
         if let Some(own) = self.own {
             boxes[0].aux = own;
         }
-        kernel.range(&boxes, time, registers, &mut out);
-        out
+        kernel.range(&boxes, time, registers, out);
+    }
+}
+
+/// Puts a state, its rate and its second rate into the rows of a slot.
+fn put<T: Copy>(rows: &mut [T], width: usize, (slot, state): (usize, usize), jet: [T; 3]) {
+    let first = 3 * width * slot + state;
+    for (row, value) in jet.into_iter().enumerate() {
+        rows[first + row * width] = value;
     }
 }
 
@@ -159,18 +186,99 @@ impl Curve for AtomCurve<'_, '_> {
         if !self.folds.is_empty() {
             return self.folded_jet(t);
         }
-        let width = self.width;
-        if width > 0 {
-            let mut chunks = self.rows.numbers.chunks_exact_mut(3 * width);
-            for (slot, chunk) in (0..self.slots.len()).zip(&mut chunks) {
-                let agent = self.slots[slot];
-                if agent != ABSENT && self.atom.slots.contains(&slot) {
-                    let (x, rest) = chunk.split_at_mut(width);
-                    let (dx, ddx) = rest.split_at_mut(width);
-                    self.agents.agents[agent].segment.jet(t, x, dx, ddx);
+        self.fill_numbers(self.atom.rates, &|segment, state| segment.state_jet(state, t));
+        if self.by_flow {
+            for (slot, &agent) in self.slots.iter().enumerate() {
+                if self.segment(slot).is_some() {
+                    let n = self.agents.agents[agent].states.len();
+                    let rows = &mut self.rows.numbers[3 * self.width * slot..][..3 * self.width];
+                    let (dx, ddx) = rows[self.width..].split_at_mut(self.width);
+                    rates_at(self.agents, agent, t, &mut dx[..n], &mut ddx[..n]);
                 }
             }
         }
+        let mut out = [0.0; 3];
+        self.apply(self.atom.rates, t, &mut out);
+        out
+    }
+
+    fn value(&mut self, t: f64) -> f64 {
+        let kernel = self.agents.program.kernel(self.atom.value);
+        if !self.folds.is_empty() || self.own.is_some() || self.by_flow {
+            return self.jet(t)[0];
+        }
+        self.rows.evaluations += 1;
+        self.rows.operations += kernel.operations();
+        self.fill_numbers(self.atom.value, &|segment, state| [segment.state(state, t), f64::NAN, f64::NAN]);
+        let mut out = [0.0];
+        self.apply(self.atom.value, t, &mut out);
+        debug_assert!(out[0].total_cmp(&self.jet(t)[0]).is_eq() || out[0].is_nan(), "the jet has another g");
+        out[0]
+    }
+
+    fn smooth(&self) -> bool {
+        self.atom.smooth
+    }
+
+    fn turns(&mut self, t: f64) -> bool {
+        if self.atom.turns.is_none() || !self.folds.is_empty() {
+            return false;
+        }
+        let time = Interval { lo: t, hi: t };
+        self.fill_boxes(t, t);
+        self.put_flow(time, |_, of_flow| of_flow);
+        self.any_turn(time, |turn| turn.mig() <= AT_TURN)
+    }
+
+    fn given_up(&self) -> bool {
+        self.interrupt.is_some_and(|interrupt| interrupt.load(Ordering::Relaxed))
+    }
+
+    fn jet_range(&mut self, s: f64, e: f64) -> [Interval; 3] {
+        let time = Interval { lo: s, hi: e };
+        if !self.folds.is_empty() {
+            return self.folded_jet_range(time);
+        }
+        self.fill_boxes(s, e);
+        if self.atom.affine && s < e && !self.may_turn(time) {
+            return self.affine_range(s, e);
+        }
+        let mut out = [Interval::WHOLE; 3];
+        self.put_flow(time, Interval::hull);
+        self.evaluate(self.atom.rates, time, &mut out);
+        if self.put_flow(time, |_, of_flow| of_flow) {
+            self.evaluate(self.atom.value, time, &mut out);
+        }
+        if s < e && !self.atom.smooth {
+            // The rates hold between the jumps of g only, and bound nothing across one.
+            (out[1], out[2]) = (Interval::WHOLE, Interval::WHOLE);
+        } else if s < e && self.may_turn(time) {
+            out[2] = Interval::WHOLE;
+        }
+        out
+    }
+}
+
+impl<'a> AtomCurve<'a, '_> {
+    /// The rows that a function reads, from the segments of the agents: state, rate and second rate.
+    fn fill_numbers(&mut self, function: FunctionId, jet: &dyn Fn(&Segment, usize) -> [f64; 3]) {
+        for &(slot, state) in &self.agents.program.kernel(function).reads().moving {
+            if let Some(segment) = self.segment(slot) {
+                put(&mut self.rows.numbers, self.width, (slot, state), jet(segment, state));
+            }
+        }
+    }
+
+    /// The last segment of the agent in a slot; none if there is nobody, or nothing is read of it but what events change.
+    fn segment(&self, slot: usize) -> Option<&'a Segment> {
+        let agent = self.slots[slot];
+        let is_read = agent != ABSENT && self.atom.slots.contains(&slot);
+        is_read.then(|| &self.agents.agents[agent].segment)
+    }
+
+    /// A function of the numbers at t.
+    fn apply(&self, function: FunctionId, t: f64, out: &mut [f64]) {
+        let width = self.width;
         let mut views: Views<'_> = (0..self.slots.len())
             .map(|slot| {
                 let agent = self.slots[slot];
@@ -189,71 +297,46 @@ impl Curve for AtomCurve<'_, '_> {
         if let Some(own) = self.own {
             views[0].aux = own;
         }
-        let mut out = [0.0; 3];
-        self.agents.program.kernel(self.atom.rates).eval(&views, t, &mut out);
-        out
+        self.agents.program.kernel(function).eval(&views, t, out);
     }
 
-    fn smooth(&self) -> bool {
-        self.atom.smooth
-    }
-
-    fn turns(&mut self, t: f64) -> bool {
-        if self.atom.turns.is_none() || !self.folds.is_empty() {
-            return false;
-        }
-        self.fill_boxes(t, t);
-        self.any_turn(Interval { lo: t, hi: t }, |turn| turn.mig() <= AT_TURN)
-    }
-
-    fn given_up(&self) -> bool {
-        self.interrupt.is_some_and(|interrupt| interrupt.load(Ordering::Relaxed))
-    }
-
-    fn jet_range(&mut self, s: f64, e: f64) -> [Interval; 3] {
-        let time = Interval { lo: s, hi: e };
-        if !self.folds.is_empty() {
-            return self.folded_jet_range(time);
-        }
-        self.fill_boxes(s, e);
-        if self.atom.affine && s < e && !self.may_turn(time) {
-            return self.affine_range(s, e);
-        }
-        let mut out = [Interval::WHOLE; 3];
-        self.evaluate(self.atom.rates, time, &mut out);
-        if s < e && !self.atom.smooth {
-            // The rates hold between the jumps of g only, and bound nothing across one.
-            (out[1], out[2]) = (Interval::WHOLE, Interval::WHOLE);
-        } else if s < e && self.may_turn(time) {
-            out[2] = Interval::WHOLE;
-        }
-        out
-    }
-}
-
-/// Fills in rows of states, rates and accelerations of one agent from its segment.
-type RowsOf<'a> = dyn FnMut(&Segment, &mut [Interval], &mut [Interval], &mut [Interval]) + 'a;
-
-impl AtomCurve<'_, '_> {
-    /// States, rates and accelerations of all slots over [s, e].
+    /// The rows that the comparison and its turns read over [s, e].
     fn fill_boxes(&mut self, s: f64, e: f64) {
-        self.fill(&mut |segment, x, dx, ddx| segment.jet_range(s, e, x, dx, ddx));
-    }
-
-    fn fill(&mut self, rows_of: &mut RowsOf<'_>) {
-        let width = self.width;
-        if width == 0 {
-            return;
-        }
-        let mut chunks = self.rows.boxes.chunks_exact_mut(3 * width);
-        for (slot, chunk) in (0..self.slots.len()).zip(&mut chunks) {
-            let agent = self.slots[slot];
-            if agent != ABSENT && self.atom.slots.contains(&slot) {
-                let (x, rest) = chunk.split_at_mut(width);
-                let (dx, ddx) = rest.split_at_mut(width);
-                rows_of(&self.agents.agents[agent].segment, x, dx, ddx);
+        for function in [Some(self.atom.rates), self.atom.turns].into_iter().flatten() {
+            for &(slot, state) in &self.agents.program.kernel(function).reads().moving {
+                if let Some(segment) = self.segment(slot) {
+                    let jet = segment.jet_range(state, s, e);
+                    put(&mut self.rows.boxes, self.width, (slot, state), jet);
+                }
             }
         }
+    }
+
+    /// Where the source reads rates: puts those of the flow into the boxes in place of the slopes of the segments, or beside
+    /// them. A rate of g is along the slopes; g itself is of the rates. False, and nothing is done, where it reads none.
+    fn put_flow(&mut self, time: Interval, join: impl Fn(Interval, Interval) -> Interval) -> bool {
+        if !self.by_flow {
+            return false;
+        }
+        let of_slots: Vec<(usize, usize)> = if self.folds.is_empty() {
+            let is_read = |&(slot, _): &(usize, &usize)| self.segment(slot).is_some();
+            self.slots.iter().enumerate().filter(is_read).map(|(slot, &agent)| (slot, agent)).collect()
+        } else {
+            self.involved.iter().copied().enumerate().collect()
+        };
+        let width = self.width;
+        for (place, agent) in of_slots {
+            let n = self.agents.agents[agent].states.len();
+            let (mut rates, mut seconds) = (vec![Interval::WHOLE; n], vec![Interval::WHOLE; n]);
+            let CurveRows { boxes, registers, .. } = &mut *self.rows;
+            let span = (time.lo, time.hi);
+            if rate_ranges(self.agents, agent, span, registers, &mut rates, &mut seconds) {
+                let (dx, ddx) = boxes[3 * width * place..][width..3 * width].split_at_mut(width);
+                dx.iter_mut().zip(rates).for_each(|(slope, rate)| *slope = join(*slope, rate));
+                ddx[..n].copy_from_slice(&seconds);
+            }
+        }
+        true
     }
 
     /// A function over the boxes.
@@ -321,7 +404,12 @@ impl AtomCurve<'_, '_> {
         let size = |bound: Interval| bound.lo.abs().max(bound.hi.abs());
         let mut spread = [size(jet[1]) * r + 0.5 * size(jet[2]) * r * r, size(jet[2]) * r, 0.0];
         for power in 3..=degree {
-            self.fill(&mut |segment, _, _, ddx| segment.term_range(s, e, power, ddx));
+            for &(slot, state) in &self.agents.program.kernel(self.atom.rates).reads().moving {
+                if let Some(segment) = self.segment(slot) {
+                    let first = 3 * self.width * slot;
+                    self.rows.boxes[first + 2 * self.width + state] = segment.term_range(state, s, e, power);
+                }
+            }
             let mut out = [Interval::WHOLE; 3];
             self.evaluate(self.atom.rates, Interval { lo: middle, hi: middle }, &mut out);
             let (term, k) = (size(out[2]), power as f64);

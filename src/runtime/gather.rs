@@ -152,9 +152,7 @@ impl Engine<'_, '_> {
         if gates {
             self.set_gates(&concerned)?;
         }
-        for instance in concerned {
-            self.calm(instance);
-        }
+        self.calm(&concerned);
         Ok(())
     }
 
@@ -243,6 +241,8 @@ impl Engine<'_, '_> {
         };
         state.truth = state.leap.map_or(!state.truth, |leap| leap.after);
         state.rooted = true;
+        self.guards.roused.push(index as u32);
+        let state = &mut self.guards.atoms[index];
         // Across a jump the rate says nothing of how near zero g is.
         let slack = if state.leap.is_some() { 0.0 } else { jet[1].abs() * self.event_tolerance(time) };
         self.recertify(index, root.max(time));

@@ -86,14 +86,17 @@ impl Groups {
             let has_states = component.iter().any(|&agent| !agents.agents[agent].states.is_empty());
             let version = self.groups[number].version + 1;
             let step = component.iter().filter_map(|&agent| h(agent)).min_by(f64::total_cmp);
-            for &agent in &component {
-                agents.agents[agent].group = number;
-            }
             let read = component.iter().flat_map(|&agent| agents.couples(agent));
             let mut leaders: Vec<usize> =
                 read.filter(|agent| component.binary_search(agent).is_err()).collect();
             leaders.sort_unstable();
             leaders.dedup();
+            let alone = component.len() == 1 && leaders.is_empty();
+            for &agent in &component {
+                agents.agents[agent].group = number;
+                agents.courses[agent].alone = alone;
+                agents.divert(agent);
+            }
             self.groups[number] = Group {
                 members: component,
                 clock: if has_states { clock } else { f64::INFINITY },

@@ -11,6 +11,7 @@ use crate::math::Interval;
 use crate::runtime::candidates::Candidates;
 use crate::runtime::definition::{AtomShape, Definition, definitions};
 pub use crate::runtime::definition::{Listing, Origin};
+use crate::runtime::noticed::Noticed;
 use crate::runtime::population::{ABSENT, Agents, Slots};
 
 /// Numbers of atom instances.
@@ -145,6 +146,10 @@ pub struct Guards<'p> {
     pub instances: Vec<Instance>,
     /// By number.
     pub atoms: Vec<AtomState>,
+    /// The atoms that may be `touched` or `rooted`, some more than once.
+    pub roused: Vec<u32>,
+    /// What is read of agents besides states and modes.
+    pub noticed: Noticed,
     /// `rising`: whether its condition has been false since arming.
     pub rising: Vec<bool>,
     /// For each agent, the instances of which it is a root.
@@ -186,6 +191,8 @@ impl<'p> Guards<'p> {
             instances: Vec::new(),
             atoms: Vec::new(),
             rising: Vec::new(),
+            roused: Vec::new(),
+            noticed: Noticed::new(agents, &definitions),
             of_agent: vec![Vec::new(); agents.len()],
             hearing: vec![Vec::new(); agents.len()],
             over_type: vec![Vec::new(); agents.of_type.len()],
@@ -319,6 +326,18 @@ impl<'p> Guards<'p> {
         }
     }
 
+    /// Forgets of the atoms of some instances, rising, what was so at the instant only.
+    pub fn calm(&mut self, instances: &[u32]) {
+        let Self { atoms, roused, .. } = self;
+        roused.retain(|&index| {
+            let state = &mut atoms[index as usize];
+            if instances.binary_search(&state.instance).is_ok() {
+                (state.touched, state.rooted) = (false, false);
+            }
+            state.touched || state.rooted
+        });
+    }
+
     /// The instances of a link of an agent, in the order of its cases.
     pub fn of_link(&self, agent: usize, link: usize) -> Vec<u32> {
         let is_of_link = |&instance: &u32| matches!(self.definition(instance).origin, Origin::Link(update) if update.link == link);
@@ -390,8 +409,12 @@ impl<'p> Guards<'p> {
 
     /// The slots of an instance; quantified ones are absent.
     pub fn slots(&self, agents: &Agents<'_>, instance: u32) -> Slots {
-        let roots = self.roots(instance);
-        agents.slots(self.definition(instance).frame, &roots)
+        let definition = self.definition(instance);
+        let [first, second] = self.instances[instance as usize].roots.map(|agent| agent as usize);
+        match definition.origin {
+            Origin::Pair(_) => agents.slots(definition.frame, &[first, second]),
+            _ => agents.slots(definition.frame, &[first]),
+        }
     }
 
     /// The agents of an instance: one, or two for an interaction.
@@ -426,8 +449,12 @@ impl<'p> Guards<'p> {
     pub fn atom_slots(&self, agents: &Agents<'_>, index: usize) -> (&'p Atom, Slots) {
         let instance = self.atoms[index].instance;
         let definition = self.definition(instance);
-        let (atom, bound) = self.bindings(agents, index);
         let mut slots = self.slots(agents, instance);
+        if definition.quantified.is_empty() {
+            let atom = index - self.instances[instance as usize].atoms as usize;
+            return (definition.comparisons[atom], slots);
+        }
+        let (atom, bound) = self.bindings(agents, index);
         for &(binder, agent) in &bound {
             slots[binder.slot] = agent;
         }

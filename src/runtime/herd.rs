@@ -19,10 +19,11 @@ use crate::runtime::tracks::Tracks;
 pub struct Herd<'p> {
     /// How they move.
     pub leaps: Leaps<'p>,
-    /// The auxiliary columns that their flow reads.
-    inputs: Vec<usize>,
     /// How many states each has.
     n: usize,
+    /// How wide a row is: the states; time and states at the begin of the last step; those from which the way is followed;
+    /// what does not move of the series.
+    width: usize,
     /// By place.
     pub agents: Vec<u32>,
     /// How far each has come, s; infinite for one that is not cold.
@@ -30,6 +31,8 @@ pub struct Herd<'p> {
     rows: Vec<f64>,
     /// For each place, bounds of the states since the window began, then over the last step.
     bounds: Vec<Interval>,
+    /// By place.
+    looks: Vec<Looks>,
     /// The steps in this window of those that something may concern in it.
     pub tracks: Tracks,
     /// Scratch.
@@ -43,6 +46,35 @@ pub struct Advanced {
     pub steps: u64,
     /// The places of those that could go no further by such steps, or only by very many.
     pub refused: Vec<usize>,
+    /// The places of those that have taken many, so that somebody should look whether their flow is stiff.
+    pub unlooked: Vec<usize>,
+}
+
+/// How many steps an agent takes before somebody should look whether its flow is stiff.
+#[derive(Clone, Copy, Debug)]
+struct Looks {
+    /// So many more.
+    left: u32,
+    /// So many from one look to the next.
+    patience: u32,
+}
+
+/// No steps have been taken.
+const NO_LOOKS: Looks = Looks { left: 128, patience: 128 };
+/// The patience doubles from look to look up to this.
+const PATIENCE_MAX: u32 = 1024;
+
+impl Looks {
+    /// Counts steps; whether somebody should look.
+    fn count(&mut self, steps: u32) -> bool {
+        self.left = self.left.saturating_sub(steps);
+        if self.left > 0 {
+            return false;
+        }
+        self.patience = (2 * self.patience).min(PATIENCE_MAX);
+        self.left = self.patience;
+        true
+    }
 }
 
 /// An agent that takes so many steps in a window is left to who can choose another method.
@@ -51,39 +83,47 @@ const STEPS_MAX: u32 = 200;
 pub const FEW: usize = 3;
 
 impl<'p> Herd<'p> {
-    /// No agents yet; `inputs` are the auxiliary columns that the flow reads.
-    pub fn new(leaps: Leaps<'p>, inputs: Vec<usize>) -> Self {
+    /// No agents yet.
+    pub fn new(leaps: Leaps<'p>) -> Self {
         let n = leaps.tape.n_states;
         let alone = RefCell::new((LeapRows::new(&leaps), Segment::default()));
         let tracks = Tracks::new(n, leaps.order + 1);
-        let (agents, clocks, rows, bounds) = Default::default();
-        Self { leaps, inputs, n, agents, clocks, rows, bounds, tracks, alone }
-    }
-
-    /// A row: the states; time and states at the begin of the last step; those from which the way is followed; inputs.
-    fn width(&self) -> usize {
-        3 * self.n + 2 + self.inputs.len()
+        let (agents, clocks, rows, bounds, looks) = Default::default();
+        Self {
+            leaps,
+            n,
+            width: 3 * n + 2 + leaps.tape.fixed.len(),
+            agents,
+            clocks,
+            rows,
+            bounds,
+            looks,
+            tracks,
+            alone,
+        }
     }
 
     fn row(&self, place: usize) -> &[f64] {
-        &self.rows[place * self.width()..][..self.width()]
+        &self.rows[place * self.width..][..self.width]
     }
 
     /// Takes an agent in, which gets the last place.
     pub fn push(&mut self, agent: usize) -> usize {
         self.agents.push(agent as u32);
         self.clocks.push(f64::INFINITY);
-        self.rows.resize(self.agents.len() * self.width(), 0.0);
+        self.looks.push(NO_LOOKS);
+        self.rows.resize(self.agents.len() * self.width, 0.0);
         self.bounds.resize(self.agents.len() * 2 * self.n, Interval::WHOLE);
         self.agents.len() - 1
     }
 
     /// Takes an agent out; the one that had the last place, if there is another, has its place now.
     pub fn remove(&mut self, place: usize) -> Option<usize> {
-        let (last, width) = (self.agents.len() - 1, self.width());
+        let (last, width) = (self.agents.len() - 1, self.width);
         self.tracks.remove(place, last);
         self.agents.swap_remove(place);
         self.clocks.swap_remove(place);
+        self.looks.swap_remove(place);
         self.rows.copy_within(last * width.., place * width);
         self.rows.truncate(last * width);
         let width = 2 * self.n;
@@ -100,7 +140,7 @@ impl<'p> Herd<'p> {
         aux: &[f64],
         bounds: impl Iterator<Item = Interval>,
     ) {
-        let (n, width) = (self.n, self.width());
+        let (n, width) = (self.n, self.width);
         self.clocks[place] = t;
         let row = &mut self.rows[place * width..][..width];
         row[..n].copy_from_slice(x);
@@ -108,9 +148,7 @@ impl<'p> Herd<'p> {
             row[begin] = t;
             row[begin + 1..begin + 1 + n].copy_from_slice(x);
         }
-        for (value, &column) in row[3 * n + 2..].iter_mut().zip(&self.inputs) {
-            *value = aux[column];
-        }
+        self.leaps.tape.fix(|_, column| aux[column as usize], &mut row[3 * n + 2..]);
         let (since, last) = self.bounds[place * 2 * n..][..2 * n].split_at_mut(n);
         since.iter_mut().zip(bounds).for_each(|(since, bound)| *since = bound);
         last.copy_from_slice(since);
@@ -147,7 +185,7 @@ impl<'p> Herd<'p> {
         let (start, states) = self.known(place);
         x.copy_from_slice(states);
         let (rows, _) = &mut *self.alone.borrow_mut();
-        self.fix(place, &mut rows.fixed);
+        rows.fixed.copy_from_slice(self.fixed(place));
         self.leaps.follow((start, t), x, rows, segment)
     }
 
@@ -165,14 +203,9 @@ impl<'p> Herd<'p> {
         self.alone.borrow_mut().1 = segment;
     }
 
-    /// Works out what does not move of the series of an agent.
-    pub fn fix(&self, place: usize, fixed: &mut [f64]) {
-        let inputs = &self.row(place)[3 * self.n + 2..];
-        let input = |_: u32, column: u32| {
-            let found = self.inputs.iter().position(|&input| input == column as usize);
-            inputs[found.expect("what the series reads are the herd's inputs")]
-        };
-        self.leaps.tape.fix(input, fixed);
+    /// What does not move of the series of an agent.
+    pub fn fixed(&self, place: usize) -> &[f64] {
+        &self.row(place)[3 * self.n + 2..]
     }
 
     /// Advances all that have not come as far as `until` until they have; what is known of their ways begins at `from` or
@@ -219,8 +252,7 @@ impl<'p> Herd<'p> {
 
     /// Puts an agent into a lane: where it is or, if a track is wanted of it, where its way is known from.
     fn board(&mut self, place: usize, lane: usize, (from, until): (f64, f64), lanes: &mut Lanes) {
-        let (n, width) = (self.n, self.width());
-        self.fix(place, &mut lanes.fixed);
+        let (n, width) = (self.n, self.width);
         let row = &mut self.rows[place * width..][..width];
         if row[n] <= from {
             row.copy_within(n..2 * n + 1, 2 * n + 1);
@@ -242,7 +274,7 @@ impl<'p> Herd<'p> {
             let bound = self.bounds[place * 2 * n + i];
             (lanes.lows[i].0[lane], lanes.highs[i].0[lane]) = (bound.lo, bound.hi);
         }
-        for (wide, &value) in lanes.rows.fixed.iter_mut().zip(&lanes.fixed) {
+        for (wide, &value) in lanes.rows.fixed.iter_mut().zip(&row[3 * n + 2..]) {
             wide.0[lane] = value;
         }
     }
@@ -274,7 +306,7 @@ impl<'p> Herd<'p> {
             }
             // After a refused step it is where that began, and has come there by none that is known.
             let (t, x) = if good { (lanes.t, &lanes.x) } else { (lanes.last_t, &lanes.last_x) };
-            let (n, width) = (self.n, self.width());
+            let (n, width) = (self.n, self.width);
             let row = &mut self.rows[place * width..][..width];
             self.clocks[place] = t.0[lane];
             row[n] = lanes.last_t.0[lane];
@@ -285,6 +317,9 @@ impl<'p> Herd<'p> {
                 self.bounds[since] = Interval { lo: lanes.lows[i].0[lane], hi: lanes.highs[i].0[lane] };
                 let LeapRows { lows, highs, .. } = &lanes.rows;
                 self.bounds[last] = Interval { lo: lows[i].0[lane], hi: highs[i].0[lane] };
+            }
+            if self.looks[place].count(lanes.taken[lane]) {
+                advanced.unlooked.push(place);
             }
             if !good || goes_on {
                 advanced.refused.push(place);
@@ -311,8 +346,8 @@ impl<'p> Herd<'p> {
 
     /// Advances one agent from where its lane has brought it.
     fn alone(&mut self, lane: usize, lanes: &Lanes, rows: &mut LeapRows<f64>, advanced: &mut Advanced) {
-        let (n, width, place) = (self.n, self.width(), lanes.place[lane]);
-        self.fix(place, &mut rows.fixed);
+        let (n, width, place) = (self.n, self.width, lanes.place[lane]);
+        rows.fixed.copy_from_slice(self.fixed(place));
         let mut t = lanes.t.0[lane];
         let mut last_t = lanes.last_t.0[lane];
         let (mut x, mut last_x, mut x_new) = ([0.0; STATES_MAX], [0.0; STATES_MAX], [0.0; STATES_MAX]);
@@ -324,10 +359,12 @@ impl<'p> Herd<'p> {
             *since = Interval { lo: low.0[lane], hi: high.0[lane] };
         }
         let steps_max = if lanes.is_tracked[lane] { u32::MAX } else { STEPS_MAX };
+        let mut taken = lanes.taken[lane];
         for _ in 0..steps_max {
             if t >= lanes.target[lane] {
                 break;
             }
+            taken += 1;
             let leap = self.leaps.leap(t, &x[..n], rows, &mut x_new[..n]);
             if leap.good == 0.0 {
                 advanced.refused.push(place);
@@ -348,6 +385,9 @@ impl<'p> Herd<'p> {
         }
         if lanes.is_tracked[lane] {
             return;
+        }
+        if self.looks[place].count(taken) {
+            advanced.unlooked.push(place);
         }
         if t < lanes.target[lane] && advanced.refused.last() != Some(&place) {
             advanced.refused.push(place);
@@ -388,8 +428,6 @@ struct Lanes {
     highs: Vec<Wide>,
     good: Wide,
     rows: LeapRows<Wide>,
-    /// Scratch: what does not move, of one agent.
-    fixed: Vec<f64>,
 }
 
 impl Lanes {
@@ -411,7 +449,6 @@ impl Lanes {
             highs: vec![zero; n],
             good: zero,
             rows: LeapRows::new(leaps),
-            fixed: vec![0.0; leaps.tape.fixed.len()],
         }
     }
 }

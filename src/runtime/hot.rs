@@ -81,13 +81,22 @@ impl Engine<'_, '_> {
         changing.into_iter().for_each(|agent| self.thaw(agent));
     }
 
-    /// Advances the cold agents to `until`; those that can go no further are brought back.
+    /// Advances the cold agents to `until`; those that can go no further, or may be stiff, are brought back.
     fn advance_cold(&mut self, until: f64) {
-        let mut refused = Vec::new();
+        let mut back = Vec::new();
         let from = self.present.time;
-        let steps = self.agents.cold.advance(from, until, &mut |agent| refused.push(agent));
+        let steps = self.agents.cold.advance(from, until, &mut |agent, look| back.push((agent, look)));
         self.count_cold(&steps);
-        refused.into_iter().for_each(|agent| self.thaw(agent));
+        for (agent, look) in back {
+            if look && !self.stepper.has_choice() {
+                continue;
+            }
+            self.thaw(agent);
+            if look {
+                let group = self.agents.agents[agent].group;
+                self.groups.groups[group].integration.switch.ask();
+            }
+        }
     }
 
     /// Certifies doubtful comparisons by bounds of their agents over the window; returns those that it does not.
@@ -148,6 +157,7 @@ impl Engine<'_, '_> {
         let row = &self.agents.agents[agent];
         let group = &mut self.groups.groups[row.group];
         if self.stepper.is_stiff(agent, row.mode)
+            || group.integration.switch.is_asked()
             || group.members.len() != 1
             || !self.agents.followers(agent).is_empty()
             || !self.agents.cold.may_be(row.ty, row.mode)

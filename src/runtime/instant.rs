@@ -11,7 +11,7 @@ use crate::runtime::act::{Claimed, Effect, Written, claims};
 use crate::runtime::arm::Rule;
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Place, Reason, contested};
-use crate::runtime::guards::Origin;
+use crate::runtime::guards::{AtomState, Origin};
 use crate::runtime::observe::{Event, FalseAssert};
 use crate::runtime::population::Slots;
 use crate::runtime::repetition::Finding;
@@ -103,9 +103,7 @@ impl Engine<'_, '_> {
         concerned.dedup();
         self.judge_claims(&concerned)?;
         self.set_gates(&concerned)?;
-        for &instance in &concerned {
-            self.calm(instance);
-        }
+        self.calm(&concerned);
         self.end_lives();
         self.recorder.after_instant(
             &self.agents,
@@ -340,29 +338,23 @@ impl Engine<'_, '_> {
 
     /// A crossing is true for one micro-step only.
     fn release_crossings(&mut self, woken: &[u32]) {
-        for &instance in woken {
-            if !self.guards.instances[instance as usize].active {
-                continue;
-            }
+        let is_spent = |&index: &u32| {
+            let AtomState { instance, touched, rooted, .. } = self.guards.atoms[index as usize];
+            let is_woken = touched && !rooted && woken.binary_search(&instance).is_ok();
             // What is enabled by it has been collected; it fires in the next micro-step or never.
-            if !self.enabled(instance) {
-                for index in self.guards.atoms_of(instance) {
-                    let state = &mut self.guards.atoms[index];
-                    state.touched &= state.rooted;
-                }
-            }
-        }
+            is_woken && self.guards.instances[instance as usize].active && !self.enabled(instance)
+        };
+        let spent: Vec<u32> = self.guards.roused.iter().copied().filter(is_spent).collect();
+        spent.into_iter().for_each(|index| self.guards.atoms[index as usize].touched = false);
     }
 
-    /// Ends the instant for an instance: what was true only at it is so no more.
-    pub fn calm(&mut self, instance: u32) {
-        for index in self.guards.atoms_of(instance) {
-            let state = &mut self.guards.atoms[index];
-            state.touched = false;
-            state.rooted = false;
+    /// Ends the instant for some instances, rising: what was true only at it is so no more.
+    pub fn calm(&mut self, concerned: &[u32]) {
+        self.guards.calm(concerned);
+        for &instance in concerned {
+            self.note_rising(instance);
+            self.rearm(instance);
         }
-        self.note_rising(instance);
-        self.rearm(instance);
     }
 
     /// Rule 8: invariants that are false now end the run, asserts are noted.

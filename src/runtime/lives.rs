@@ -267,7 +267,9 @@ impl Engine<'_, '_> {
         self.recorder.admit(self.agents.who(place), place);
         if self.agents.cold.is_used() {
             self.agents.cold.admit(place);
-            self.hot.push(place);
+            if self.agents.cold.may_ever_be(self.agents.agents[place].ty) {
+                self.hot.push(place);
+            }
         }
     }
 

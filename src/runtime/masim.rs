@@ -186,6 +186,7 @@ impl Engine<'_, '_> {
                 }
                 self.groups.groups[number].version += 1;
                 let members = self.groups.groups[number].members.clone();
+                members.iter().for_each(|&member| self.agents.divert(member));
                 self.doubt(&members, cover);
                 Ok(())
             }

@@ -28,6 +28,15 @@ pub struct New {
     candidate: Option<Nominee>,
 }
 
+/// What becomes of pairs that are not near any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Far {
+    /// They are forgotten.
+    LetGo,
+    /// They stay in the list: in the middle of an instant somebody may still ask what has become of them.
+    Keep,
+}
+
 /// A new candidate.
 #[derive(Debug)]
 struct Nominee {
@@ -85,7 +94,7 @@ impl<'p> Engine<'p, '_> {
         let mut new = Vec::new();
         let mut done = Ok(());
         for field in &mut fields {
-            done = self.list_field(field, until, &mut new);
+            done = self.list_field(field, until, Far::LetGo, &mut new);
             if done.is_err() {
                 break;
             }
@@ -95,7 +104,13 @@ impl<'p> Engine<'p, '_> {
         done.map(|()| new)
     }
 
-    fn list_field(&mut self, field: &mut Field, until: f64, new: &mut Vec<New>) -> Result<(), Failure> {
+    fn list_field(
+        &mut self,
+        field: &mut Field,
+        until: f64,
+        far: Far,
+        new: &mut Vec<New>,
+    ) -> Result<(), Failure> {
         let near = self.ranges_of(field);
         let mut boxes = Vec::new();
         field.seats = field.seats_of(&self.agents);
@@ -117,7 +132,7 @@ impl<'p> Engine<'p, '_> {
         let mut before = before.into_iter().peekable();
         for agents in wanted {
             while let Some(old) = before.next_if(|old| old.agents < agents) {
-                self.let_go(old, field);
+                self.see_off(old, far, field);
             }
             match before.next_if(|old| old.agents == agents) {
                 Some(old) => field.listed.push(old),
@@ -125,7 +140,7 @@ impl<'p> Engine<'p, '_> {
             }
         }
         for old in before {
-            self.let_go(old, field);
+            self.see_off(old, far, field);
         }
         self.guards.thin();
         Ok(())
@@ -135,6 +150,13 @@ impl<'p> Engine<'p, '_> {
     fn ranges_of(&self, field: &Field) -> &'p [Near] {
         let definition = &self.guards.definitions[field.definition];
         field.quantifier.map_or(definition.near, |number| definition.nearby[number].near)
+    }
+
+    fn see_off(&mut self, old: Listed, far: Far, field: &mut Field) {
+        match far {
+            Far::LetGo => self.let_go(old, field),
+            Far::Keep => field.listed.push(old),
+        }
     }
 
     /// Forgets a pair that is not near any more, but for one whose guard has not been found false since it fired.
@@ -218,7 +240,7 @@ impl<'p> Engine<'p, '_> {
         let near = self.ranges_of(field);
         if field.seats != field.seats_of(&self.agents) {
             let mut new = Vec::new();
-            self.list_field(field, self.neighbours.until, &mut new)?;
+            self.list_field(field, self.neighbours.until, Far::Keep, &mut new)?;
             return new.into_iter().try_for_each(|new| self.introduce(new, born, armed));
         }
         let mut moved = Vec::new();

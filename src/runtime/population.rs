@@ -16,6 +16,9 @@ use crate::runtime::observe::Who;
 use crate::runtime::route::{begin_histories, first};
 use crate::runtime::solve::segment::Segment;
 
+/// So many are looked up in the lists of their types one by one.
+const FEW_DEAD: usize = 8;
+
 /// How many seats a type gets that has had none.
 const SEATS_LEAST: usize = 8;
 
@@ -65,12 +68,23 @@ impl Agent {
     }
 }
 
+/// What bounds of where an agent gets to rest on. Many are asked for at once: they lie close together.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Course {
+    /// Changes whenever what was derived from where the agent gets to becomes void.
+    pub version: u32,
+    /// Whether it has its clock for itself, and its flow reads nobody else.
+    pub alone: bool,
+}
+
 /// All agents with their links.
 pub struct Agents<'p> {
     /// The program they follow.
     pub program: &'p Program,
     /// By place.
     pub agents: Vec<Agent>,
+    /// By place.
+    pub courses: Vec<Course>,
     /// Who runs ahead.
     pub cold: Cold<'p>,
     /// The places of the living agents of each type, in the order of their numbers.
@@ -89,6 +103,8 @@ pub struct Agents<'p> {
     free: Vec<usize>,
     /// Places of those who died in the instant at hand.
     retired: Vec<usize>,
+    /// Places and numbers of those who are still in the lists of their types, though they have died.
+    dismissed: Vec<(usize, usize)>,
     /// For each agent, those that have a link to it.
     linked_from: Vec<Vec<usize>>,
     /// The longest chain of links that any frame follows.
@@ -163,6 +179,8 @@ impl<'p> Agents<'p> {
             free_seats: vec![Vec::new(); program.types.len()],
             free: Vec::new(),
             retired: Vec::new(),
+            dismissed: Vec::new(),
+            courses: vec![Course::default(); agents.len()],
             agents,
             of_type,
             linked_from,
@@ -303,11 +321,18 @@ impl<'p> Agents<'p> {
         self.of_type[ty].push(place);
         if place == self.agents.len() {
             self.agents.push(agent);
+            self.courses.push(Course::default());
             self.linked_from.push(Vec::new());
         } else {
             self.agents[place] = agent;
         }
+        self.divert(place);
         place
+    }
+
+    /// What was derived from where an agent gets to is void.
+    pub fn divert(&mut self, agent: usize) {
+        self.courses[agent].version += 1;
     }
 
     /// Whether a type has a seat that nobody has.
@@ -330,7 +355,8 @@ impl<'p> Agents<'p> {
         for link in 0..layout.n_links {
             self.link(place, link, ABSENT);
         }
-        let Agent { ty, seat, .. } = self.agents[place];
+        let Agent { ty, seat, number, .. } = self.agents[place];
+        self.dismissed.push((place, number));
         self.seats[ty][seat] = ABSENT;
         self.free_seats[ty].push(seat);
         self.turnover[ty][1] += 1;
@@ -342,11 +368,21 @@ impl<'p> Agents<'p> {
     /// Takes those who have been dismissed out of the lists of their types.
     pub fn close_ranks(&mut self) {
         self.changes += 1;
-        let mut types: Vec<usize> = self.retired.iter().map(|&place| self.agents[place].ty).collect();
-        types.sort_unstable();
-        types.dedup();
-        for ty in types {
-            self.of_type[ty].retain(|&place| self.agents[place].number != NOBODY);
+        let dismissed = std::mem::take(&mut self.dismissed);
+        if dismissed.len() > FEW_DEAD {
+            for places in &mut self.of_type {
+                places.retain(|&place| self.agents[place].number != NOBODY);
+            }
+            return;
+        }
+        for &(dead, last) in &dismissed {
+            let number = |place: usize| match self.agents[place].number {
+                NOBODY => dismissed.iter().find(|dead| dead.0 == place).map_or(NOBODY, |dead| dead.1),
+                number => number,
+            };
+            let places = &mut self.of_type[self.agents[dead].ty];
+            let place = places.partition_point(|&place| number(place) < last);
+            places.remove(place);
         }
     }
 

@@ -2,9 +2,10 @@
 //!
 //! Rates that are bounded whatever the states are (a speed times a cosine, a saturated input) bound the way of a state
 //! for as long as the agent follows the same flow with the same parameters; a state whose rate is bounded by those has
-//! bounds too. These are kept until the agent's group changes its version. The way begins at an anchor, where the agent
-//! has come to ([`anchor`]): if that is beyond the present, an event may cut it away, and the box with it. Other states
-//! have a box by Picard's operator ([`Enclosures`]), or none.
+//! bounds too. These are kept until the agent's course changes its version. They hold from where it was at or before the
+//! present ([`source`]). The way is laid from an anchor, where the agent has come to ([`anchor`]), on and back: if that is
+//! beyond the present, an event may cut it away, and the box with it. Other states have a box by Picard's operator
+//! ([`Enclosures`]), or none.
 
 use smallvec::SmallVec;
 
@@ -16,7 +17,7 @@ use crate::runtime::population::{ABSENT, Agents};
 use crate::runtime::present::Boxes;
 use crate::runtime::solve::control::Accuracy;
 
-/// Bounds of each state's rate, valid while the agent's group has the same version.
+/// Bounds of each state's rate, valid while the agent's course has the same version.
 #[derive(Clone, Copy, Debug)]
 struct Kept {
     version: u32,
@@ -106,12 +107,10 @@ impl Reaches {
         if n == 0 {
             return;
         }
-        let number = agents.agents[agent].group;
-        let group = &groups[number];
         let first = self.kept[agent].first as usize;
-        if is_alone(group) && to <= self.time_end {
+        if agents.courses[agent].alone && to <= self.time_end {
             let (t, states) = anchor(agents, groups, agent);
-            self.refresh(agents, group, agent, (t, states));
+            self.refresh(agents, groups, agent, from);
             let span = Interval { lo: from - t, hi: to - t };
             for (&x, &rate) in states.iter().zip(&self.rates[first..first + n]) {
                 out.push(if rate.is_whole() { rate } else { self.padded(x, span.mul(rate)) });
@@ -130,30 +129,32 @@ impl Reaches {
         });
     }
 
-    /// Bounds of the rate of one state of an agent from its anchor on, whatever its states are; none if there are none.
+    /// Bounds of the rate of one state of an agent from `from` on, which is not before the present, whatever its states are;
+    /// none if there are none.
     pub fn rate(
         &mut self,
         agents: &Agents<'_>,
         groups: &[Group],
         agent: usize,
         state: usize,
-        anchor: (f64, &[f64]),
+        from: f64,
     ) -> Option<Interval> {
-        let group = &groups[agents.agents[agent].group];
-        if !is_alone(group) {
+        if !agents.courses[agent].alone {
             return None;
         }
-        self.refresh(agents, group, agent, anchor);
+        self.refresh(agents, groups, agent, from);
         let rate = self.rates[self.kept[agent].first as usize + state];
         (!rate.is_whole()).then_some(rate)
     }
 
-    /// Bounds the rates of an agent that is alone from its anchor on, if what is known of them is not valid there.
-    fn refresh(&mut self, agents: &Agents<'_>, group: &Group, agent: usize, anchor: (f64, &[f64])) {
+    /// Bounds the rates of an agent that is alone from `from` on, if what is known of them is not valid there.
+    fn refresh(&mut self, agents: &Agents<'_>, groups: &[Group], agent: usize, from: f64) {
         let Kept { version, since, .. } = self.kept[agent];
-        if version != group.version || anchor.0 < since {
-            let pure = self.bound(agents, agent, anchor);
-            self.kept[agent] = Kept { version: group.version, since: anchor.0, pure, ..self.kept[agent] };
+        let now = agents.courses[agent].version;
+        if version != now || from < since {
+            let (since, states) = source(agents, groups, agent, from);
+            let pure = self.bound(agents, agent, (since, &states));
+            self.kept[agent] = Kept { version: now, since, pure, ..self.kept[agent] };
         }
     }
 
@@ -162,8 +163,8 @@ impl Reaches {
         self.kept[agent].pure
     }
 
-    /// Bounds the rates of an agent that is alone from its anchor on, as far as they are bounded whatever its states are. True
-    /// if all are, and by nothing that is known of the states.
+    /// Bounds the rates of an agent that is alone and has these states at `since`, from there on, as far as they are bounded
+    /// whatever its states are. True if all are, and by nothing that is known of the states.
     fn bound(&mut self, agents: &Agents<'_>, number: usize, (since, states): (f64, &[f64])) -> bool {
         let first = self.kept[number].first as usize;
         let agent = &agents.agents[number];
@@ -225,7 +226,19 @@ pub fn anchor<'a>(agents: &'a Agents<'_>, groups: &[Group], agent: usize) -> (f6
     }
 }
 
-/// Whether a group is one agent whose flow reads no other.
-fn is_alone(group: &Group) -> bool {
-    group.members.len() == 1 && group.leaders.is_empty()
+/// Where an agent is, or was on the way that it follows, at `from` or before it, and its states there; `from` is not before the
+/// present.
+fn source(agents: &Agents<'_>, groups: &[Group], agent: usize, from: f64) -> (f64, SmallVec<[f64; 8]>) {
+    let row = &agents.agents[agent];
+    let clock = groups[row.group].clock;
+    if agents.cold.is_cold(agent) {
+        if agents.cold.knows(agent, from) {
+            return agents.cold.known(agent);
+        }
+    } else if clock <= from {
+        return (clock, row.states.as_slice().into());
+    }
+    let mut states: SmallVec<[f64; 8]> = SmallVec::from_elem(0.0, row.states.len());
+    row.segment.states(row.segment.start, &mut states);
+    (row.segment.start, states)
 }

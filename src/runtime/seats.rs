@@ -86,6 +86,8 @@ impl Guards<'_> {
                 });
             }
         }
+        self.roused.iter_mut().for_each(|index| *index = moved[*index as usize]);
+        self.roused.retain(|&index| index != u32::MAX);
         queues.renumber_atoms(&moved);
     }
 }

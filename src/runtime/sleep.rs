@@ -174,10 +174,10 @@ impl Engine<'_, '_> {
         let (tb, xb) = anchor(agents, groups, b);
         let mut distant = None;
         for near in near {
-            let Some(ra) = self.reaches.rate(agents, groups, a, near.own, (ta, xa)) else {
+            let Some(ra) = self.reaches.rate(agents, groups, a, near.own, from) else {
                 return Distance::Unknown;
             };
-            let Some(rb) = self.reaches.rate(agents, groups, b, near.other, (tb, xb)) else {
+            let Some(rb) = self.reaches.rate(agents, groups, b, near.other, from) else {
                 return Distance::Unknown;
             };
             let (a, b) = (xa[near.own], xb[near.other]);

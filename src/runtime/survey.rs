@@ -77,8 +77,6 @@ struct Seats {
     end: Wide,
     good: Wide,
     rows: LeapRows<Wide>,
-    /// Scratch: what does not move, of one agent.
-    fixed: Vec<f64>,
 }
 
 impl Seats {
@@ -94,7 +92,6 @@ impl Seats {
             end: zero,
             good: zero,
             rows: LeapRows::new(leaps),
-            fixed: vec![0.0; leaps.tape.fixed.len()],
         }
     }
 
@@ -105,8 +102,7 @@ impl Seats {
         self.n_taken += 1;
         self.t.0[lane] = start;
         self.x.iter_mut().zip(states).for_each(|(wide, &x)| wide.0[lane] = x);
-        herd.fix(place, &mut self.fixed);
-        self.rows.fixed.iter_mut().zip(&self.fixed).for_each(|(wide, &value)| wide.0[lane] = value);
+        self.rows.fixed.iter_mut().zip(herd.fixed(place)).for_each(|(wide, &value)| wide.0[lane] = value);
     }
 
     fn leave(&mut self, lane: usize) {

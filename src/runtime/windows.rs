@@ -83,7 +83,8 @@ impl Engine<'_, '_> {
         let accuracy = self.stepper.accuracy;
         self.agents.cold = Cold::new(self.program, self.agents.len(), accuracy, self.time_end);
         if self.agents.cold.is_used() {
-            self.hot = self.agents.living();
+            let may_be = |&agent: &usize| self.agents.cold.may_ever_be(self.agents.agents[agent].ty);
+            self.hot = self.agents.living().into_iter().filter(may_be).collect();
         }
     }
 

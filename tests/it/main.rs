@@ -30,6 +30,7 @@ mod lints;
 mod crowds;
 mod grazes;
 mod poles;
+mod rates;
 mod jumps;
 mod closed_forms;
 mod bumper;

@@ -6,6 +6,10 @@ use crate::math::Interval;
 pub trait Curve {
     /// g, g', g'' at t; g'' may be NaN where it is not known.
     fn jet(&mut self, t: f64) -> [f64; 3];
+    /// g at t, the same number as in the jet.
+    fn value(&mut self, t: f64) -> f64 {
+        self.jet(t)[0]
+    }
     /// Whether g cannot jump. Where it can, only its own bounds hold over a stretch, and no rounding is told from a jump.
     fn smooth(&self) -> bool;
     /// Bounds of g, g', g'' over [s, e].
@@ -121,7 +125,7 @@ impl<'a> Turned<'a> {
         let keeps_zero = known.closed == known.truth;
         let mut f = Self { curve, turned: known.truth, keeps_zero, rounding_max: 0.0 };
         let size = [s, e]
-            .map(|t| f.curve.jet(t)[0].abs())
+            .map(|t| f.curve.value(t).abs())
             .into_iter()
             .filter(|size| size.is_finite())
             .fold(1.0, f64::max);
@@ -131,20 +135,32 @@ impl<'a> Turned<'a> {
 
     /// f, f', f'' at t.
     pub fn jet(&mut self, t: f64) -> [f64; 3] {
-        let jet = self.curve.jet(t);
-        if jet[0].is_nan() {
-            return [if self.turned { f64::NEG_INFINITY } else { f64::INFINITY }, f64::NAN, f64::NAN];
-        }
-        let mut jet = if self.turned { jet.map(|v| -v) } else { jet };
-        if jet[0] == 0.0 && self.keeps_zero {
-            jet[0] = f64::from_bits(1);
-        }
-        jet
+        let [g, rate, second] = self.curve.jet(t);
+        let turn = |rate: f64| if self.turned { -rate } else { rate };
+        let rates = [rate, second].map(|rate| if g.is_nan() { f64::NAN } else { turn(rate) });
+        [self.turn(g), rates[0], rates[1]]
     }
 
     /// f at t.
     pub fn value(&mut self, t: f64) -> f64 {
-        self.jet(t)[0]
+        let g = self.curve.value(t);
+        self.turn(g)
+    }
+
+    /// f where this is g.
+    fn turn(&self, g: f64) -> f64 {
+        match (g, self.turned) {
+            (g, turned) if g.is_nan() => {
+                if turned {
+                    f64::NEG_INFINITY
+                } else {
+                    f64::INFINITY
+                }
+            }
+            (0.0, _) if self.keeps_zero => f64::from_bits(1),
+            (g, true) => -g,
+            (g, false) => g,
+        }
     }
 
     /// How a piece is entered that begins in the middle of one entered so.
@@ -178,7 +194,7 @@ impl<'a> Turned<'a> {
 
     /// Whether g is no number at some points of [s, e], its ends among them.
     pub fn undefined_all_over(&mut self, s: f64, e: f64) -> bool {
-        (0..5).all(|k| self.curve.jet(s + (e - s) * 0.25 * f64::from(k))[0].is_nan())
+        (0..5).all(|k| self.curve.value(s + (e - s) * 0.25 * f64::from(k)).is_nan())
     }
 
     /// Bounds of f, f', f'' over [s, e].

@@ -78,53 +78,72 @@ impl Segment {
 
     /// States, their first and their second derivatives at `t`.
     pub fn jet(&self, t: f64, x: &mut [f64], dx: &mut [f64], ddx: &mut [f64]) {
-        let theta = self.theta(t);
-        let n = self.n_coefficients;
-        for (i, c) in self.coefficients.chunks_exact(n).enumerate() {
-            let (mut p, mut dp, mut ddp) = (0.0, 0.0, 0.0);
-            for &c in c.iter().rev() {
-                ddp = ddp * theta + dp;
-                dp = dp * theta + p;
-                p = p * theta + c;
-            }
-            x[i] = p;
-            dx[i] = dp / self.h;
-            ddx[i] = 2.0 * ddp / (self.h * self.h);
+        for i in 0..self.n_states() {
+            [x[i], dx[i], ddx[i]] = self.state_jet(i, t);
         }
     }
 
-    /// Bounds of the states and their first and second derivatives over [s, e].
-    pub fn jet_range(&self, s: f64, e: f64, x: &mut [Interval], dx: &mut [Interval], ddx: &mut [Interval]) {
-        let n = self.n_coefficients;
-        let from = (s - self.start) / self.h;
-        let to = (e - self.start) / self.h;
-        let middle = 0.5 * (from + to);
-        let radius = (0.5 * (to - from)).abs() * (1.0 + 1e-15);
-        let mut moved = [0.0; N_MAX];
-        for (i, c) in self.coefficients.chunks_exact(n).enumerate() {
-            let moved = &mut moved[..n];
-            moved.copy_from_slice(c);
-            shift(moved, middle);
-            let (d, dd) = (moved.get(1).copied().unwrap_or(0.0), moved.get(2).copied().unwrap_or(0.0));
-            // A rate at a point is a coefficient that was made by a product with h, divided by h again.
-            let own = |value: f64| if s == e { 4.0 * f64::EPSILON * value.abs() } else { 0.0 };
-            let own = [0.0, own(d), own(2.0 * dd)];
-            let rounding =
-                |order| spread(c, middle.abs(), order) * (8 * n) as f64 * f64::EPSILON + own[order];
-            let (scale, square) = (1.0 / self.h, 1.0 / (self.h * self.h));
-            x[i] = around(moved[0], spread(moved, radius, 0), rounding(0));
-            dx[i] = around(d * scale, spread(moved, radius, 1) * scale, rounding(1) * scale);
-            ddx[i] = around(2.0 * dd * square, spread(moved, radius, 2) * square, rounding(2) * square);
+    /// One state at `t`.
+    pub fn state(&self, state: usize, t: f64) -> f64 {
+        let theta = self.theta(t);
+        self.polynomial(state).iter().rev().fold(0.0, |sum, c| sum * theta + c)
+    }
+
+    /// One state, its first and its second derivative at `t`.
+    pub fn state_jet(&self, state: usize, t: f64) -> [f64; 3] {
+        let theta = self.theta(t);
+        let (mut p, mut dp, mut ddp) = (0.0, 0.0, 0.0);
+        for &c in self.polynomial(state).iter().rev() {
+            ddp = ddp * theta + dp;
+            dp = dp * theta + p;
+            p = p * theta + c;
         }
+        [p, dp / self.h, 2.0 * ddp / (self.h * self.h)]
+    }
+
+    /// Bounds of one state and its first and second derivatives over [s, e].
+    pub fn jet_range(&self, state: usize, s: f64, e: f64) -> [Interval; 3] {
+        let c = self.polynomial(state);
+        let n = c.len();
+        let (middle, radius) = self.middle(s, e);
+        let radius = radius.abs() * (1.0 + 1e-15);
+        let mut moved = [0.0; N_MAX];
+        let moved = &mut moved[..n];
+        moved.copy_from_slice(c);
+        shift(moved, middle);
+        let (d, dd) = (moved.get(1).copied().unwrap_or(0.0), moved.get(2).copied().unwrap_or(0.0));
+        // A rate at a point is a coefficient that was made by a product with h, divided by h again.
+        let own = |value: f64| if s == e { 4.0 * f64::EPSILON * value.abs() } else { 0.0 };
+        let own = [0.0, own(d), own(2.0 * dd)];
+        let (above, moving) = (spread(moved, radius), spread(c, middle.abs()));
+        let centres = [moved[0], d, 2.0 * dd];
+        let scales = [1.0, 1.0 / self.h, 1.0 / (self.h * self.h)];
+        std::array::from_fn(|order| {
+            let rounding = moving[order] * (8 * n) as f64 * f64::EPSILON + own[order];
+            let scale = scales[order];
+            around(centres[order] * scale, above[order] * scale, rounding * scale)
+        })
+    }
+
+    /// Middle and radius of [s, e] in units of the step.
+    fn middle(&self, s: f64, e: f64) -> (f64, f64) {
+        let (from, to) = ((s - self.start) / self.h, (e - self.start) / self.h);
+        (0.5 * (from + to), 0.5 * (to - from))
+    }
+
+    fn polynomial(&self, state: usize) -> &[f64] {
+        &self.coefficients[state * self.n_coefficients..][..self.n_coefficients]
+    }
+
+    fn n_states(&self) -> usize {
+        self.coefficients.len() / self.n_coefficients.max(1)
     }
 }
 
 impl Segment {
     /// Bounds of one state over [s, e].
     pub fn range(&self, state: usize, s: f64, e: f64) -> Interval {
-        let n = self.n_coefficients;
-        let c = &self.coefficients[state * n..(state + 1) * n];
-        value_range(c, (s - self.start) / self.h, (e - self.start) / self.h)
+        value_range(self.polynomial(state), (s - self.start) / self.h, (e - self.start) / self.h)
     }
 
     /// How high a power the polynomials have.
@@ -132,21 +151,18 @@ impl Segment {
         self.n_coefficients.saturating_sub(1)
     }
 
-    /// Bounds of what the `power`-th terms of the polynomials moved to the middle of [s, e] are at e.
-    pub fn term_range(&self, s: f64, e: f64, power: usize, terms: &mut [Interval]) {
-        let n = self.n_coefficients;
-        let (from, to) = ((s - self.start) / self.h, (e - self.start) / self.h);
-        let (middle, radius) = (0.5 * (from + to), 0.5 * (to - from));
+    /// Bounds of what the `power`-th term of a state's polynomial moved to the middle of [s, e] is at e.
+    pub fn term_range(&self, state: usize, s: f64, e: f64, power: usize) -> Interval {
+        let c = self.polynomial(state);
+        let (middle, radius) = self.middle(s, e);
         let mut moved = [0.0; N_MAX];
-        for (term, c) in terms.iter_mut().zip(self.coefficients.chunks_exact(n)) {
-            let moved = &mut moved[..n];
-            moved.copy_from_slice(c);
-            shift(moved, middle);
-            let reach = middle.abs() + radius.abs();
-            let size = c.iter().skip(1).rev().fold(0.0, |sum, c| (sum + c.abs()) * reach);
-            let value = moved.get(power).copied().unwrap_or(0.0) * radius.powi(power as i32);
-            *term = around(value, 0.0, size * (8 * n) as f64 * f64::EPSILON);
-        }
+        let moved = &mut moved[..c.len()];
+        moved.copy_from_slice(c);
+        shift(moved, middle);
+        let reach = middle.abs() + radius.abs();
+        let size = c.iter().skip(1).rev().fold(0.0, |sum, c| (sum + c.abs()) * reach);
+        let value = moved.get(power).copied().unwrap_or(0.0) * radius.powi(power as i32);
+        around(value, 0.0, size * (8 * c.len()) as f64 * f64::EPSILON)
     }
 }
 
@@ -178,14 +194,19 @@ fn shift(c: &mut [f64], by: f64) {
     }
 }
 
-/// Bounds what the terms above the first of the `order`-th derivative add within `radius` of the origin.
-fn spread(c: &[f64], radius: f64, order: usize) -> f64 {
-    let mut sum = 0.0;
-    for k in (order + 1..c.len()).rev() {
-        let falling = (k + 1 - order..=k).map(|factor| factor as f64).product::<f64>();
-        sum = sum * radius + falling * c[k].abs();
+/// Bounds what the terms above the first of a polynomial, of its first and of its second derivative add within `radius` of
+/// the origin.
+fn spread(c: &[f64], radius: f64) -> [f64; 3] {
+    let mut sums = [0.0; 3];
+    for k in (1..c.len()).rev() {
+        let (power, size) = (k as f64, c[k].abs());
+        for (order, falling) in [1.0, power, power * (power - 1.0)].into_iter().enumerate() {
+            if k > order {
+                sums[order] = sums[order] * radius + falling * size;
+            }
+        }
     }
-    sum * radius
+    sums.map(|sum| sum * radius)
 }
 
 fn around(centre: f64, radius: f64, rounding: f64) -> Interval {

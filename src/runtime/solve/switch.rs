@@ -70,6 +70,18 @@ impl Switch {
         self.votes > 0 || self.since >= patience
     }
 
+    /// Has the next accepted explicit step looked at: many have been taken elsewhere, and nobody has looked.
+    pub fn ask(&mut self) {
+        if self.regime == Regime::Explicit {
+            self.since = PATIENCE;
+        }
+    }
+
+    /// Whether the next accepted step is to be looked at.
+    pub fn is_asked(&self) -> bool {
+        self.votes > 0 || self.since >= PATIENCE
+    }
+
     /// Takes notice of a look.
     pub fn count(&mut self, vote: Vote) {
         self.since = 0;

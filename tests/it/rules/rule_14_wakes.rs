@@ -109,3 +109,22 @@ fn rule_14_a_chain_of_wakes_in_one_instant() {
     );
     assert_eq!(run.log(), ["0 A.start a[3]", "1 A.spread a[2]", "2 A.spread a[1]", "3 A.spread a[0]"]);
 }
+
+#[test]
+fn rule_14_what_no_guard_reads_wakes_nobody() {
+    // one of the crowd ticks, or looks at nothing but its clock
+    let text = |write: &str| {
+        format!(
+            "agent A(i: int) {{ state x = 3*i  discrete n: int = 0, k: int = 0  flow {{ x' = 0.1 }}
+               tick: every 0.01 when i == 0 {{ {write} }}
+               c: when (count o in other A where (o.x - x)^2 <= 4) >= 2 {{ n := n + 1 }} }}
+             system {{ a = A[40](i = index) }}  run {{ until 1 }}"
+        )
+    };
+    let looks = |write: &str| {
+        let stats = simulate(&text(write)).stats;
+        stats.guard_evaluations + stats.guard_ranges
+    };
+    let (quiet, busy) = (looks(""), looks("k := k + 1"));
+    assert!(busy <= quiet + 100, "{quiet} looks, {busy} where somebody counts for itself");
+}

@@ -435,3 +435,74 @@ fn distances_in_one_two_and_three_dimensions() {
         );
     }
 }
+
+/// Bounds of rates hold from where they were found on; a list of near pairs is made between two steps of agents that have come
+/// further.
+#[test]
+fn who_comes_near_while_others_are_ahead_is_listed() {
+    let run = alike(
+        "agent A { state x, y = 0, th, z = 0
+           flow { x' = 5*cos(th)  y' = 5*sin(th)  th' = 0.4  z' = abs(x) } }
+         interaction I(a: A, b: A) { i: when (a.x - b.x)^2 + (a.y - b.y)^2 <= 0.64 { } }
+         system { a = A(x = -0.5, th = 0)  b = A(x = 3, th = 3.14) }
+         run { until 2 }",
+        1,
+    );
+    near(run.fast.times("I.i")[0], 0.271_858_295_52, 1e-6);
+    let run = alike(
+        "agent B { state x = 0  flow { x' = 1 } }
+         agent A(x0: real) { state x = x0, y = 0.5  discrete seen = 0
+           flow { x' = 0.15*y  y' = 0.3 + 0.05*floor(x) }
+           g: when x >= 1.7 { seen := x  y := 0 } }
+         system { ramp = B()  a = A[2](x0 = 1.6 + 0.01*index) }
+         run { until 5 }",
+        2,
+    );
+    // 1.6 + 0.075 t + 0.02625 t^2 = 1.7
+    let reached = |rest: f64| (-0.075 + (0.075_f64.powi(2) + 4.0 * 0.02625 * rest).sqrt()) / (2.0 * 0.02625);
+    near(run.fast.times_of("A.g", "a[0]")[0], reached(0.1), 1e-6);
+    near(run.fast.times_of("A.g", "a[1]")[0], reached(0.09), 1e-6);
+}
+
+/// Cars on arcs, whose ways another state integrates: their rates are bounded by what is known of their states.
+#[test]
+fn a_dense_arena_with_integrals_of_the_ways() {
+    alike(
+        "agent Car(i: int) {
+           state x = 3*(mod(i, 8) + hash(i, 0)), y = 3*(floor(i/8) + hash(i, 1)), th = 6.28*hash(i, 2), z = 0
+           discrete met: int = 0
+           flow { x' = 2*cos(th)  y' = 2*sin(th)  th' = 0.8*cos(time + 3*hash(i, 3))  z' = abs(x - 12) + 0.1*y } }
+         interaction I(a: Car, b: Car) {
+           i: when (a.x - b.x)^2 + (a.y - b.y)^2 <= 0.64 { a.met := a.met + 1  b.met := b.met + 1 } }
+         system { cars = Car[64](i = index) }  run { until 4 }",
+        30,
+    );
+}
+
+#[test]
+fn a_stiff_crowd_is_found_to_be_stiff() {
+    let text = "agent A { state a = 1, b = 0, c = 0
+           flow { a' = -0.04*a + 1e4*b*c  b' = 0.04*a - 1e4*b*c - 3e7*b^2  c' = 3e7*b^2 } }
+         system { a = A[20]() }  run { until 10 }";
+    let [fast, plain] = [Form::Fast, Form::Plain].map(|form| by(text, form, TOLERANCE).stats);
+    let stiff =
+        |stats: &hyc::runtime::observe::Stats| stats.methods.iter().find(|m| m.0 == "stiff").unwrap().1;
+    assert!(stiff(&fast) > 100);
+    assert!(fast.steps < 8 * plain.steps, "{} steps, {} in the plain form", fast.steps, plain.steps);
+}
+
+/// Who is born in an instant has the lists made anew: who was near in it, and is not any more, is not forgotten before its end.
+#[test]
+fn a_birth_in_the_instant_in_which_somebody_comes_and_goes() {
+    let both = alike(
+        "agent A { state x = 0  discrete k: int = 0  flow { x' = 0 }
+           j1: when k == 0 { x := 10  k := 1 }
+           j2: when k == 1 { x := 20  k := 2 } }
+         agent B { state x = 10  flow { x' = 0 }
+           far: when forall o in A: (o.x - x)^2 >= 1 { }
+           near: when exists o in A: (o.x - x)^2 <= 0.1 { create B(x = -100) } }
+         system { a = A()  b = B() }  run { until 2 }",
+        6,
+    );
+    assert_eq!(both.fast.times_of("B.far", "b"), [0.0, 0.0]);
+}
