@@ -112,7 +112,9 @@ impl Element {
     pub fn ends_arithmetic(&self) -> bool {
         match self {
             Element::Operand(_) | Element::Prefix(..) => false,
-            Element::Infix(operator) => operator.precedence() <= Operator::Compare(CompareOp::Less).precedence(),
+            Element::Infix(operator) => {
+                operator.precedence() <= Operator::Compare(CompareOp::Less).precedence()
+            }
             Element::Is(_) => true,
         }
     }

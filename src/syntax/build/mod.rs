@@ -38,7 +38,8 @@ pub fn build_read(source: Source, mut pairs: Pairs<Rule>) -> Result<Outcome, Unr
 }
 
 fn outcome(piece: Piece) -> Result<Outcome, Unread> {
-    let mut builder = Builder { source: piece.source(), ended: Cell::new(0), errors: Vec::new(), is_helper: false };
+    let mut builder =
+        Builder { source: piece.source(), ended: Cell::new(0), errors: Vec::new(), is_helper: false };
     let tree = builder.file(piece)?;
     Ok(if builder.errors.is_empty() { Ok(tree) } else { Err(builder.errors) })
 }
