@@ -22,7 +22,10 @@ pub struct Bounds {
 impl Bounds {
     /// At t = 0, with whatever parameters and data. Only what the text declares is certain then.
     pub fn at_start(system: &System) -> Self {
-        let aux = system.types.iter().map(|ty| columns(system, ty)).collect();
+        // The place of an agent that is created may be any.
+        let creates = system.action_lists().any(|list| !list.births().is_empty());
+        let n_agents = if creates { REAL.hi } else { system.population.agents.len() as f64 };
+        let aux = system.types.iter().map(|ty| columns(ty, n_agents)).collect();
         let mut bounds = Self { aux };
         let starts = hulls(system, |agent| &agent.discretes);
         for &(ty, k) in &system.population.fixed {
@@ -70,12 +73,9 @@ impl Bounds {
     }
 }
 
-/// What columns can hold as such.
-fn columns(system: &System, ty: &AgentSystem) -> Vec<Interval> {
+/// What columns can hold as such, among so many agents.
+fn columns(ty: &AgentSystem, n_agents: f64) -> Vec<Interval> {
     let layout = &ty.layout;
-    // The place of an agent that is created may be any.
-    let creates = system.action_lists().any(|list| !list.births().is_empty());
-    let n_agents = if creates { REAL.hi } else { system.population.agents.len() as f64 };
     let mut columns = vec![REAL; layout.n_aux()];
     columns[Layout::NUMBER] = Interval::new(0.0, (n_agents - 1.0).max(0.0));
     columns[Layout::MODE] = Interval::new(0.0, (ty.modes.len() - 1) as f64);

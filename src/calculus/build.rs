@@ -3,7 +3,7 @@
 //! A loop with an explicit stack, because a sum of 100 000 terms is a chain of that depth. What an expression means in
 //! an environment is remembered, so that what is shared in the model is shared in the graph.
 
-use rustc_hash::FxHashSet;
+use smallvec::SmallVec;
 
 use crate::base::Span;
 use crate::calculus::draft::Draft;
@@ -56,8 +56,8 @@ pub fn number(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) ->
 
 /// Lowers any expression without quantifiers.
 pub fn value(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> Result<Value, Halt> {
+    // The model refuses circles of lets, functions and rates; one that it missed would end at the limit of work.
     let mut stack = vec![(env, expr)];
-    let mut waiting: FxHashSet<(EnvId, ExprId)> = stack.iter().copied().collect();
     while let Some(&(env, expr)) = stack.last() {
         if !scope.memo.contains_key(&(env, expr)) {
             draft.graph.spend(LOWERING);
@@ -70,17 +70,12 @@ pub fn value(draft: &mut Draft, scope: &mut Scope, env: EnvId, expr: ExprId) -> 
                     scope.memo.insert((env, expr), value);
                 }
                 Err(Wait::For(inner_env, inner)) => {
-                    assert!(
-                        waiting.insert((inner_env, inner)),
-                        "the model refuses circles of lets, functions and rates"
-                    );
                     stack.push((inner_env, inner));
                     continue;
                 }
                 Err(Wait::Halted(halt)) => return Err(halt),
             }
         }
-        waiting.remove(&(env, expr));
         stack.pop();
     }
     Ok(scope.memo[&(env, expr)])
@@ -114,7 +109,7 @@ fn step(draft: &mut Draft, scope: &mut Scope, env: EnvId, id: ExprId) -> Result<
         ExprKind::Link(agent, link) => {
             let agent = need_agent(scope, env, *agent)?;
             let slot = scope.slot(model, agent, span)?;
-            let target = slot.map_or(AgentRef::Absent, |from| AgentRef::Link { from, link: *link });
+            let target = slot.map_or(AgentRef::Absent, |from| AgentRef::link(from, *link));
             return Ok(Value::Agent(target));
         }
         ExprKind::State(agent, k) => column(draft, scope, env, *agent, span, |_, slot| state(slot, *k))?,
@@ -130,8 +125,10 @@ fn step(draft: &mut Draft, scope: &mut Scope, env: EnvId, id: ExprId) -> Result<
             None => draft.graph.number(f64::NAN),
         },
         ExprKind::Apply(op, operands) => {
-            let nodes =
-                operands.iter().map(|&e| need_number(scope, env, e)).collect::<Result<Vec<_>, _>>()?;
+            let mut nodes: SmallVec<[NodeId; 3]> = SmallVec::new();
+            for &operand in operands.iter() {
+                nodes.push(need_number(scope, env, operand)?);
+            }
             draft.graph.apply(*op, &nodes)
         }
         ExprKind::Call(function, arguments) => {
@@ -201,7 +198,7 @@ fn over_members(draft: &mut Draft, scope: &mut Scope, env: EnvId, id: ExprId) ->
     let nothing = draft.graph.number(nothing);
     let mut folded = nothing;
     for link in links.map_or(0..0, |set| set.first..set.first + set.count) {
-        let member = AgentRef::Link { from: 0, link };
+        let member = AgentRef::link(0, link);
         let slot = scope.slot(model, member, span)?.expect("a link has a slot");
         let inner = scope.bound_env(env, binder, slot);
         let mut belongs = present(draft, scope, member);
@@ -359,7 +356,7 @@ fn present(draft: &mut Draft, scope: &Scope, agent: AgentRef) -> NodeId {
         AgentRef::Absent => draft.graph.number(0.0),
         AgentRef::Slot(slot) => match scope.frame.slots[slot] {
             Slot::Root { .. } | Slot::Fold { .. } => draft.graph.number(1.0),
-            Slot::Link { from, link, .. } => present(draft, scope, AgentRef::Link { from, link }),
+            Slot::Link { from, link, .. } => present(draft, scope, AgentRef::link(from, link)),
         },
         AgentRef::Link { .. } => {
             let zero = draft.graph.number(0.0);
@@ -375,11 +372,11 @@ pub fn agent_number(draft: &mut Draft, scope: &Scope, agent: AgentRef) -> NodeId
         AgentRef::Absent => draft.graph.number(-1.0),
         AgentRef::Slot(slot) => match scope.frame.slots[slot] {
             Slot::Root { .. } | Slot::Fold { .. } => draft.graph.intern(aux(slot, Layout::NUMBER)),
-            Slot::Link { from, link, .. } => agent_number(draft, scope, AgentRef::Link { from, link }),
+            Slot::Link { from, link, .. } => agent_number(draft, scope, AgentRef::link(from, link)),
         },
         AgentRef::Link { from, link } => {
-            let layout = draft.layout(scope.frame.slots[from].ty());
-            let column = layout.link(link);
+            let (from, link) = (from as usize, link as usize);
+            let column = draft.layout(scope.frame.slots[from].ty()).link(link);
             draft.graph.intern(aux(from, column))
         }
     }

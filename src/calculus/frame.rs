@@ -34,17 +34,24 @@ pub enum AgentRef {
     /// Where link `link` of the agent in slot `from` leads.
     Link {
         /// Where it starts.
-        from: usize,
+        from: u32,
         /// Its number.
-        link: usize,
+        link: u32,
     },
     /// `none`.
     Absent,
 }
 
+impl AgentRef {
+    /// Where a link of the agent in a slot leads.
+    pub fn link(from: usize, link: usize) -> Self {
+        Self::Link { from: from as u32, link: link as u32 }
+    }
+}
+
 /// Names an [`Env`] of a scope.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct EnvId(usize);
+pub struct EnvId(u32);
 
 /// What the free names of an expression mean.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
@@ -117,7 +124,7 @@ impl Scope {
 
     /// The name of an environment.
     pub fn env(&mut self, env: Env) -> EnvId {
-        let next = EnvId(self.envs.len());
+        let next = EnvId(self.envs.len() as u32);
         *self.env_ids.entry(env).or_insert_with_key(|env| {
             self.envs.push(env.clone());
             next
@@ -126,7 +133,7 @@ impl Scope {
 
     /// What an environment says.
     pub fn env_of(&self, id: EnvId) -> &Env {
-        &self.envs[id.0]
+        &self.envs[id.0 as usize]
     }
 
     /// A slot for an agent that a quantifier binds.
@@ -148,7 +155,7 @@ impl Scope {
         let (from, link) = match agent {
             AgentRef::Slot(slot) => return Ok(Some(slot)),
             AgentRef::Absent => return Ok(None),
-            AgentRef::Link { from, link } => (from, link),
+            AgentRef::Link { from, link } => (from as usize, link as usize),
         };
         if let Some(&slot) = self.links.get(&(from, link)) {
             return Ok(Some(slot));

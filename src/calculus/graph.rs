@@ -157,7 +157,16 @@ impl Graph {
                 add(operand, &mut found);
             }
         }
-        found.sort_unstable();
+        let (first, last) = (found.iter().min().copied(), found.iter().max().copied());
+        if let (Some(first), Some(last)) = (first, last) {
+            let between = first.index()..last.index() + 1;
+            if between.len() / 8 > found.len() {
+                found.sort_unstable();
+            } else {
+                found.clear();
+                found.extend(between.filter(|&id| of_node[id] == *round).map(NodeId::new));
+            }
+        }
         self.spend(found.len() as u64);
         found
     }

@@ -40,7 +40,7 @@ fn update(
 ) -> Result<LinkUpdate, Error> {
     let (mut scope, span) = (Scope::of_self(ty), case.span);
     let holds = test(draft, &mut scope, case.condition)?;
-    let own = AgentRef::Link { from: 0, link: number };
+    let own = AgentRef::link(0, number);
     let link = scope.slot(draft.model, own, span)?.expect("a link has a slot");
     let column = draft.layout(ty.index()).link(number) as u32;
     let whom = draft.graph.intern(Node::Aux { slot: 0, column });

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::arguments::{CheckArguments, Format};
-use super::input::{load, name_of, settings_with};
+use super::input::{free, load, name_of, settings_with};
 use super::terminal::{complain, say, say_aside, tell};
 use super::warnings::{Levels, count};
 use super::{Exit, Refused, sarif};
@@ -27,6 +27,7 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<Exit, Refused> {
                 worst = worst.max(checked.exit);
                 if arguments.format == Format::Text {
                     tell_checked(path, &checked)?;
+                    free(checked.system, &checked.sources);
                 } else {
                     found.push((path, checked));
                 }
@@ -62,7 +63,10 @@ struct CheckedModel {
 fn check_one(path: &Path, settings: &Settings, levels: &Levels) -> Result<CheckedModel, Refused> {
     let mut loaded = load(path, settings)?;
     let mut exit = loaded.exit();
-    let system = match loaded.model.as_ref().map(calculus::derive) {
+    let model = loaded.model.take();
+    let derived = model.as_ref().map(calculus::derive);
+    free(model, &loaded.sources);
+    let system = match derived {
         Some(Ok(system)) => {
             loaded.warnings.extend(calculus::lint(&system));
             Some(system)

@@ -3,6 +3,7 @@
 use std::fs;
 use std::io::{self, ErrorKind, Read as _};
 use std::path::{Path, PathBuf};
+use std::thread;
 
 use super::limits::Limits;
 use super::{Exit, Refused};
@@ -16,6 +17,9 @@ const MODEL_BYTES_MAX: u64 = (syntax::MAX_FILE_BYTES as u64) * 2;
 
 /// The largest data file.
 const DATA_BYTES_MAX: u64 = 1 << 30;
+
+/// What is made of shorter texts is freed at once: that takes less than another thread.
+const FREED_AT_ONCE_MAX: usize = 1 << 20;
 
 /// The name under which messages show a model's path.
 pub(super) fn name_of(path: &Path) -> String {
@@ -44,10 +48,9 @@ fn read_model(path: &Path) -> io::Result<Vec<u8>> {
 
 /// Reads and parses. Refused if the file cannot be read or is not UTF-8.
 pub(super) fn parse(path: &Path) -> Result<Parsed, Refused> {
-    let text = read_text(path)?;
     let mut sources = SourceMap::default();
-    let file = sources.add(name_of(path), text.as_str());
-    let tree = syntax::parse(file, &text);
+    let file = sources.add(name_of(path), read_text(path)?);
+    let tree = syntax::parse(file, &sources.file(file).text);
     Ok(Parsed { sources, tree })
 }
 
@@ -58,8 +61,8 @@ fn parse_or_tell(path: &Path) -> Parsed {
     let (why, text, at, help) = match read_model(path) {
         Ok(bytes) => match String::from_utf8(bytes) {
             Ok(text) => {
-                let file = sources.add(name, text.as_str());
-                let tree = syntax::parse(file, &text);
+                let file = sources.add(name, text);
+                let tree = syntax::parse(file, &sources.file(file).text);
                 return Parsed { sources, tree };
             }
             Err(error) => {
@@ -108,10 +111,23 @@ pub(super) fn load(path: &Path, settings: &Settings) -> Result<Loaded, Refused> 
     let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
     let mut files = Folder { folder, inputs: vec![path.to_path_buf()] };
     let Checked { model, diagnostics, warnings } = match tree {
-        Ok(tree) => crate::model::check(&tree, &mut sources, &mut files, settings),
+        Ok(tree) => {
+            let checked = crate::model::check(&tree, &mut sources, &mut files, settings);
+            free(tree, &sources);
+            checked
+        }
         Err(diagnostics) => Checked { model: None, diagnostics, warnings: Vec::new() },
     };
     Ok(Loaded { sources, diagnostics, warnings, model, inputs: files.inputs })
+}
+
+/// Frees what was made of these texts; of long ones beside what comes next, for nobody waits for it.
+pub(super) fn free(made: impl Send + 'static, sources: &SourceMap) {
+    let bytes: usize = sources.files().iter().map(|file| file.text.len()).sum();
+    if bytes > FREED_AT_ONCE_MAX {
+        // Where there is no other thread it is freed here.
+        let _ = thread::Builder::new().spawn(move || drop(made));
+    }
 }
 
 /// Settings that only give params and limits.

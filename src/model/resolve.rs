@@ -182,8 +182,8 @@ impl<'a> Context<'a> {
                 }
                 Home::File | Home::Function | Home::Construction => Box::new(std::iter::empty()),
             };
-            let mut known: Vec<&str> = CONSTANTS.to_vec();
-            known.extend(bound.chain(locals).chain(received).chain(of_file).chain(own));
+            let constants = CONSTANTS.iter().copied();
+            let known = constants.chain(bound).chain(locals).chain(received).chain(of_file).chain(own);
             let similar = closest(name, known);
             self.report(NameError::Unknown { what: "variable", name: name.to_string(), span, similar });
         }

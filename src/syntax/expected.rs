@@ -22,7 +22,9 @@ pub fn explain(source: Source, error: &Error<Rule>) -> SyntaxError {
         return SyntaxError::TooDeep { span: Span::new(source.file, at, at), limit: MAX_NESTING };
     };
     let found = source.tokens.partition_point(|token| token.end() <= at);
-    let failure = Failure { source, found, fitting: positives };
+    // Behind an operator all fits that an expression can begin with, and nothing else.
+    let fitting = if positives.contains(&Rule::value_name) { &[Rule::expr] } else { positives.as_slice() };
+    let failure = Failure { source, found, fitting };
     failure
         .argument_style()
         .or_else(|| failure.wrong_assignment())
@@ -122,7 +124,7 @@ impl Failure<'_> {
 
     fn chained_comparison(&self) -> Option<SyntaxError> {
         let second = matches!(self.found(), "<" | "<=" | ">" | ">=" | "==" | "!=" | "is");
-        let after_first = self.fits(Rule::plus) && !self.fits(Rule::compare_op);
+        let after_first = self.fits(Rule::operator) && !self.fits(Rule::compare_op);
         (second && after_first).then(|| SyntaxError::ChainedComparison { span: self.span() })
     }
 
@@ -244,7 +246,7 @@ impl Failure<'_> {
                 }
             }
         }
-        if self.fits(Rule::plus) {
+        if self.fits(Rule::operator) {
             let suffixes = ["a unit", "`(`", "`[`", "`'`"];
             words.retain(|word| !suffixes.contains(&word.as_str()));
         }

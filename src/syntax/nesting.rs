@@ -127,7 +127,13 @@ impl Walk<'_> {
     }
 
     fn word(&mut self, token: Token, next: &str) -> Result<(), SyntaxError> {
-        match &self.text[token.start()..token.end()] {
+        let word = &self.text[token.start()..token.end()];
+        // Most names are told from keywords by their first two letters.
+        if !matches!(word.as_bytes(), [b'a'..=b'w', b'a'..=b'z', ..]) {
+            self.operand();
+            return Ok(());
+        }
+        match word {
             "if" => self.prefix(Pending::Condition),
             "then" => self.turn(Pending::Condition, Pending::Then),
             "else" => self.turn(Pending::Then, Pending::Else),

@@ -72,11 +72,6 @@ impl<'t> Piece<'t> {
             Found::Cut(_, tokens) => bytes_of(self.text.source, tokens),
         }
     }
-
-    /// Its text.
-    pub fn as_str(&self) -> &'t str {
-        &self.text.source.text[self.range()]
-    }
 }
 
 fn bytes_of(source: Source, tokens: &Range<usize>) -> Range<usize> {
@@ -110,6 +105,21 @@ impl<'t> Parts<'t> {
                 Self { text, next: None, read: None, offset: 0, slices }
             }
         }
+    }
+
+    /// What one slice of a text consists of.
+    pub fn of_slice(text: &'t Sliced<'t>, slice: Slice) -> Self {
+        Self { text, next: None, read: None, offset: 0, slices: vec![slice].into_iter() }
+    }
+
+    /// The slices that nobody has looked at yet.
+    pub fn ahead(&self) -> &[Slice] {
+        self.slices.as_slice()
+    }
+
+    /// Takes these slices away; the parts before them stay.
+    pub fn take_ahead(&mut self) -> (&'t Sliced<'t>, Vec<Slice>) {
+        (self.text, std::mem::take(&mut self.slices).collect())
     }
 
     /// The next part, which stays where it is.

@@ -25,14 +25,16 @@ pub enum TokenKind {
 pub struct Token {
     /// What it is.
     pub kind: TokenKind,
-    /// Its first byte.
+    /// What its first byte is.
+    mark: u8,
+    /// Where its first byte stands.
     start: u32,
     /// One past its last byte.
     end: u32,
 }
 
 impl Token {
-    /// Its first byte.
+    /// Where its first byte stands.
     pub fn start(self) -> usize {
         self.start as usize
     }
@@ -58,6 +60,16 @@ impl<'t> Source<'t> {
     /// The text of a token; empty beyond the last one.
     pub fn word(&self, token: usize) -> &'t str {
         self.tokens.get(token).map_or("", |token| &self.text[token.start()..token.end()])
+    }
+
+    /// The first byte of a token, which alone says what many are; 0 beyond the last one.
+    pub fn mark(&self, token: usize) -> u8 {
+        self.tokens.get(token).map_or(0, |token| token.mark)
+    }
+
+    /// Whether a token is this word.
+    pub fn is(&self, token: usize, word: &str) -> bool {
+        word.as_bytes().first() == Some(&self.mark(token)) && self.word(token) == word
     }
 }
 
@@ -115,7 +127,7 @@ pub fn scan(file: FileId, text: &str) -> Result<Vec<Token>, SyntaxError> {
             unit_end = at + rest.find([']', '\n']).unwrap_or(0);
         }
         // Files are smaller than 2^32 bytes.
-        tokens.push(Token { kind, start: at as u32, end: (at + len) as u32 });
+        tokens.push(Token { kind, mark: rest.as_bytes()[0], start: at as u32, end: (at + len) as u32 });
         at += len;
     }
     Ok(tokens)
@@ -135,7 +147,7 @@ fn is_word_start(character: char) -> bool {
 }
 
 fn word_len(rest: &str) -> usize {
-    rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len())
+    rest.bytes().position(|c| !c.is_ascii_alphanumeric() && c != b'_').unwrap_or(rest.len())
 }
 
 fn starts_with_digit(rest: &str) -> bool {
@@ -143,7 +155,7 @@ fn starts_with_digit(rest: &str) -> bool {
 }
 
 fn digits_len(rest: &str) -> usize {
-    rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len())
+    rest.bytes().position(|c| !c.is_ascii_digit()).unwrap_or(rest.len())
 }
 
 /// The length of the number at the start of `rest`, which begins with a digit or with `.` and a digit.
@@ -196,6 +208,11 @@ fn scan_text(file: FileId, at: usize, rest: &str) -> Result<usize, SyntaxError> 
 }
 
 fn scan_symbol(file: FileId, at: usize, rest: &str) -> Result<usize, SyntaxError> {
+    let first = rest.chars().next().expect("the caller has seen a character");
+    let may_be_pair = matches!(rest.as_bytes().get(1), Some(b'=' | b'>' | b'<' | b'*' | b'/' | b'&' | b'|'));
+    if !may_be_pair && SINGLES.contains(first) {
+        return Ok(1);
+    }
     if PAIRS.iter().any(|pair| rest.starts_with(pair)) {
         return Ok(2);
     }
@@ -203,10 +220,9 @@ fn scan_symbol(file: FileId, at: usize, rest: &str) -> Result<usize, SyntaxError
         let span = Span::new(file, at, at + text.len());
         return Err(SyntaxError::ForeignOperator { span, text: text.to_string(), help });
     }
-    let character = rest.chars().next().expect("the caller has seen a character");
-    if SINGLES.contains(character) {
+    if SINGLES.contains(first) {
         return Ok(1);
     }
-    let span = Span::new(file, at, at + character.len_utf8());
-    Err(SyntaxError::UnknownCharacter { span, character })
+    let span = Span::new(file, at, at + first.len_utf8());
+    Err(SyntaxError::UnknownCharacter { span, character: first })
 }

@@ -107,12 +107,14 @@ impl Cutter<'_> {
         }
     }
 
-    /// Adds a slice for a rule that is a piece by itself.
+    /// Adds what a rule covers: one slice, or, if it is long and the rule is no piece by itself, the slices of its parts.
     fn add(&mut self, rule: Rule, tokens: Range<usize>) {
-        if self.is_long(&tokens) && self.can_cut(rule, &tokens) {
-            self.slices.push(Slice { rule, tokens, reading: Reading::InSlices });
-        } else {
+        if !self.is_long(&tokens) || !self.can_cut(rule, &tokens) {
             self.at_once(rule, tokens);
+        } else if matches!(rule, Rule::comparison | Rule::arithmetic | Rule::postfix) {
+            self.cut(rule, tokens);
+        } else {
+            self.slices.push(Slice { rule, tokens, reading: Reading::InSlices });
         }
     }
 
@@ -120,12 +122,12 @@ impl Cutter<'_> {
     fn outermost(&self, tokens: Range<usize>) -> impl Iterator<Item = usize> {
         let mut depth = 0_usize;
         tokens.filter(move |&k| {
-            let word = self.source.word(k);
-            if closes(word) {
+            let mark = self.source.mark(k);
+            if closes(mark) {
                 depth = depth.saturating_sub(1);
             }
             let outermost = depth == 0;
-            if opens(word) {
+            if opens(mark) {
                 depth += 1;
             }
             outermost
@@ -141,7 +143,7 @@ impl Cutter<'_> {
     /// The first outermost token of a stretch that is one of these; its end, if there is none.
     fn first_of(&self, tokens: Range<usize>, words: &[&str]) -> usize {
         let end = tokens.end;
-        self.outermost(tokens).find(|&k| words.contains(&self.source.word(k))).unwrap_or(end)
+        self.outermost(tokens).find(|&k| words.iter().any(|word| self.source.is(k, word))).unwrap_or(end)
     }
 
     /// `head { list }`
@@ -187,7 +189,7 @@ impl Cutter<'_> {
         self.at_once(Rule::kw_record, start..start + 1);
         self.add(Rule::expr, start + 1..columns);
         let commas: Vec<usize> =
-            self.outermost(columns..file_name).filter(|&k| self.source.word(k) == ",").collect();
+            self.outermost(columns..file_name).filter(|&k| self.source.mark(k) == b',').collect();
         self.groups(Rule::columns, commas, file_name, |_, _| false);
         self.at_once(Rule::file_name, file_name..end);
     }
@@ -279,7 +281,7 @@ impl Cutter<'_> {
                 operators.push(k);
                 operand_before = false;
             } else {
-                operand_before = word != layer.prefix && !opens(word);
+                operand_before = word != layer.prefix && !opens(self.source.mark(k));
             }
         }
         let first = operators.first().copied().unwrap_or(end);
@@ -289,8 +291,8 @@ impl Cutter<'_> {
             self.at_once(layer.first, start..first);
         }
         self.groups(layer.more, operators, end, |cutter, Range { start, end }| {
-            let Some(operator) = (layer.operator)(cutter.source.word(start)) else { return false };
-            cutter.at_once(operator, start..start + 1);
+            let Some(rule) = (layer.operator)(cutter.source.word(start)) else { return false };
+            cutter.at_once(rule, start..start + 1);
             cutter.operand(layer, start + 1..end);
             true
         });
@@ -339,11 +341,7 @@ const ARITHMETIC: Layer = Layer {
     prefix: "-",
     prefix_rule: Rule::negate,
     operator: |word| match word {
-        "+" => Some(Rule::plus),
-        "-" => Some(Rule::minus),
-        "*" => Some(Rule::times),
-        "/" => Some(Rule::divide),
-        "^" => Some(Rule::power),
+        "+" | "-" | "*" | "/" | "^" => Some(Rule::operator),
         _ => None,
     },
 };

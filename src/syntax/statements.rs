@@ -18,14 +18,14 @@ pub fn beginnings(source: Source, statements: Rule, tokens: Range<usize>) -> imp
     tokens.filter(move |&k| walk.step(k))
 }
 
-/// Whether a token opens a bracket.
-pub fn opens(word: &str) -> bool {
-    matches!(word, "(" | "[" | "{")
+/// Whether a token with this mark opens a bracket.
+pub fn opens(mark: u8) -> bool {
+    matches!(mark, b'(' | b'[' | b'{')
 }
 
-/// Whether a token closes a bracket.
-pub fn closes(word: &str) -> bool {
-    matches!(word, ")" | "]" | "}")
+/// Whether a token with this mark closes a bracket.
+pub fn closes(mark: u8) -> bool {
+    matches!(mark, b')' | b']' | b'}')
 }
 
 struct Walk<'t> {
@@ -40,16 +40,17 @@ struct Walk<'t> {
 impl Walk<'_> {
     /// Takes note of a token; whether it certainly begins a statement of the list.
     fn step(&mut self, k: usize) -> bool {
-        let word = self.source.word(k);
+        let mark = self.source.mark(k);
         let outermost = self.depth == 0;
-        if opens(word) {
+        if opens(mark) {
             self.depth += 1;
-        } else if closes(word) {
+        } else if closes(mark) {
             self.depth = self.depth.saturating_sub(1);
         }
         if !outermost {
             return false;
         }
+        let word = self.source.word(k);
         let begins = k == self.first || self.begins(k, word);
         if begins {
             let trigger = if self.is_label(k) { self.source.word(k + 2) } else { word };
@@ -61,8 +62,7 @@ impl Walk<'_> {
     }
 
     fn begins(&self, k: usize, word: &str) -> bool {
-        let before = self.source.word(k - 1);
-        if before == "}" && word != "else" {
+        if self.source.mark(k - 1) == b'}' && word != "else" {
             return true;
         }
         let behind_text = self.source.tokens[k - 1].kind == TokenKind::Text;
@@ -72,6 +72,7 @@ impl Walk<'_> {
         if self.source.tokens[k].kind != TokenKind::Word {
             return false;
         }
+        let before = self.source.word(k - 1);
         let has_transitions =
             matches!(self.statements, Rule::agent_items | Rule::body_items | Rule::interaction_items);
         match word {
@@ -103,6 +104,6 @@ impl Walk<'_> {
 
     /// Whether the name that stands here is the label of a transition.
     fn is_label(&self, k: usize) -> bool {
-        self.source.word(k + 1) == ":" && TRIGGERS.contains(&self.source.word(k + 2))
+        self.source.is(k + 1, ":") && TRIGGERS.contains(&self.source.word(k + 2))
     }
 }

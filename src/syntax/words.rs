@@ -116,17 +116,14 @@ pub fn in_words(rule: Rule) -> Vec<String> {
         Rule::actions => "`{`",
         Rule::formals | Rule::binders | Rule::named_args => "`(`",
         Rule::count | Rule::window => "`[`",
-        Rule::formula | Rule::expr | Rule::comparison | Rule::arithmetic | Rule::postfix | Rule::number => {
-            "an expression"
-        }
+        Rule::formula | Rule::expr => "an expression",
         Rule::literal | Rule::paren | Rule::list | Rule::conditional | Rule::quantifier | Rule::negate => {
             "an expression"
         }
         Rule::kw_not | Rule::kw_exists | Rule::kw_forall | Rule::kw_count | Rule::kw_sum => "an expression",
         Rule::kw_min | Rule::kw_max | Rule::kw_nearest => "an expression",
         Rule::field | Rule::call_args | Rule::subscript | Rule::dot => OPERATOR,
-        Rule::plus | Rule::minus | Rule::times | Rule::divide | Rule::power | Rule::compare_op => OPERATOR,
-        Rule::kw_and | Rule::kw_or | Rule::kw_is => OPERATOR,
+        Rule::operator | Rule::compare_op | Rule::kw_and | Rule::kw_or | Rule::kw_is => OPERATOR,
         Rule::open_paren => "`(`",
         Rule::close_paren => "`)`",
         Rule::open_bracket => "`[`",

@@ -8,15 +8,10 @@ use crate::syntax::pieces::{Parts, Piece, Unread};
 impl Builder<'_> {
     pub(super) fn actions(&mut self, piece: Piece<'_>) -> Result<Actions, Unread> {
         let span = self.span(&piece);
-        let mut actions = Vec::new();
-        for part in Parts::of(piece) {
-            let part = part?;
-            let span = self.span(&part);
-            if let Some(kind) = self.action(part)? {
-                actions.push(Action { kind, span });
-            }
-        }
-        actions.shrink_to_fit();
+        let actions = self.many_of(Parts::of(piece), |this, part| {
+            let span = this.span(&part);
+            Ok(this.action(part)?.map(|kind| Action { kind, span }))
+        })?;
         Ok(Actions { actions, span })
     }
 

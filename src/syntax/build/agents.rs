@@ -13,7 +13,7 @@ impl Builder<'_> {
         parts.expect(Rule::kw_agent)?;
         let name = self.name(parts.expect(Rule::name)?);
         let formals = parts.next_if(Rule::formals)?.map(|formals| self.formals(formals)).transpose()?;
-        let items = self.some_of(parts, Self::agent_item)?;
+        let items = self.many_of(parts, Self::agent_item)?;
         Ok(Agent { name, formals: formals.unwrap_or_default(), items, span })
     }
 
@@ -77,7 +77,7 @@ impl Builder<'_> {
         let mut parts = Parts::of(piece);
         parts.expect(Rule::kw_region)?;
         let name = self.name(parts.expect(Rule::name)?);
-        Ok(Region { name, items: self.some_of(parts, Self::body_item)?, span })
+        Ok(Region { name, items: self.many_of(parts, Self::body_item)?, span })
     }
 
     /// What stands in a mode, a region or an agent; none for braces.
@@ -97,7 +97,10 @@ impl Builder<'_> {
 
     fn flow(&mut self, piece: Piece<'_>) -> Result<Flow, Unread> {
         let span = self.span(&piece);
-        let equations = self.list(Parts::of(piece).all(Rule::equation), Self::equation)?;
+        let equations = self.many_of(Parts::of(piece), |this, part| match part.rule() {
+            Rule::equation => this.equation(part).map(Some),
+            _ => Ok(None),
+        })?;
         Ok(Flow { equations, span })
     }
 
@@ -127,7 +130,7 @@ impl Builder<'_> {
         if name.text == "history" {
             self.errors.push(SyntaxError::MisplacedHistory { span: name.span });
         }
-        Ok(Mode { name, initial, items: self.some_of(parts, Self::body_item)?, span })
+        Ok(Mode { name, initial, items: self.many_of(parts, Self::body_item)?, span })
     }
 
     /// `entry` or `exit` with its actions.

@@ -1,8 +1,8 @@
-//! Expressions: each layer's flat list of operands and operators is folded into a tree; then what stands behind an operand, and
-//! operands themselves.
+//! Expressions: the flat list of operands, of what stands behind them and of operators is folded into a tree; then operands
+//! themselves.
 
 use super::Builder;
-use super::fold::{Fold, Operand, Operator};
+use super::fold::{Element, Fold, Operand, Operator};
 use crate::base::Span;
 use crate::syntax::ast::*;
 use crate::syntax::error::SyntaxError;
@@ -40,89 +40,83 @@ impl Builder<'_> {
 
     fn logic(&mut self, piece: Piece<'_>) -> Result<Operand, Unread> {
         let mut fold = Fold::default();
-        for part in Parts::of(piece) {
-            let part = part?;
-            match part.rule() {
-                Rule::kw_not => fold.prefix(Operator::Not, self.place_of(&part)),
-                Rule::kw_and => fold.infix(Operator::And, self.place_of(&part)),
-                Rule::kw_or => fold.infix(Operator::Or, self.place_of(&part)),
-                _ => {
-                    let operand = self.comparison(part)?;
-                    fold.operand(operand);
-                }
-            }
-        }
-        fold.finish().ok_or(Unread)
-    }
-
-    fn comparison(&mut self, piece: Piece<'_>) -> Result<Operand, Unread> {
-        let mut parts = Parts::of(piece);
-        let left = self.arithmetic(parts.expect(Rule::arithmetic)?)?;
-        if parts.has(Rule::kw_is)? {
-            let mode = self.plain_target(parts.expect(Rule::target)?)?;
-            let (span, height) = (left.outer.to(mode.span), left.height);
-            return Ok(Operand::node(ExprKind::Is(left.boxed(), Box::new(mode)), span, height));
-        }
-        let Some(op) = parts.next_if(Rule::compare_op)? else { return Ok(left) };
-        let op = match op.as_str() {
-            "<" => CompareOp::Less,
-            "<=" => CompareOp::LessEqual,
-            ">" => CompareOp::Greater,
-            ">=" => CompareOp::GreaterEqual,
-            "==" => CompareOp::Equal,
-            _ => CompareOp::NotEqual,
-        };
-        let right = self.arithmetic(parts.expect(Rule::arithmetic)?)?;
-        let (span, height) = (left.outer.to(right.outer), left.height.max(right.height));
-        Ok(Operand::node(ExprKind::Compare(op, left.boxed(), right.boxed()), span, height))
-    }
-
-    fn arithmetic(&mut self, piece: Piece<'_>) -> Result<Operand, Unread> {
-        let mut fold = Fold::default();
-        for part in Parts::of(piece) {
-            let part = part?;
-            match part.rule() {
-                Rule::negate => fold.prefix(Operator::Neg, self.place_of(&part)),
-                Rule::plus => fold.infix(Operator::Sum(SumOp::Add), self.place_of(&part)),
-                Rule::minus => fold.infix(Operator::Sum(SumOp::Sub), self.place_of(&part)),
-                Rule::times => fold.infix(Operator::Product(ProductOp::Mul), self.place_of(&part)),
-                Rule::divide => fold.infix(Operator::Product(ProductOp::Div), self.place_of(&part)),
-                Rule::power => fold.infix(Operator::Power, self.place_of(&part)),
-                _ => {
-                    let operand = self.postfix(part)?;
-                    fold.operand(operand);
-                }
-            }
+        let parts = Parts::of(piece);
+        if self.is_worth_sharing(&parts) {
+            let elements = |this: &mut Self, parts: Parts<'_>| {
+                let mut elements = Vec::new();
+                this.elements(parts, |_, element| elements.push(element))?;
+                Ok(elements)
+            };
+            self.shared(parts, elements, |this, elements| {
+                elements.into_iter().for_each(|element| this.fold(&mut fold, element));
+            })?;
+        } else {
+            self.elements(parts, |this, element| this.fold(&mut fold, element))?;
         }
         let operand = fold.finish().ok_or(Unread);
         self.errors.append(&mut fold.errors);
         operand
     }
 
-    /// The place of an operator's piece; operators hold no white space.
-    fn place_of(&self, piece: &Piece<'_>) -> Span {
-        let bytes = piece.range();
-        Span::new(self.source.file, bytes.start, bytes.end)
-    }
-
-    fn postfix(&mut self, piece: Piece<'_>) -> Result<Operand, Unread> {
-        let mut parts = Parts::of(piece);
-        let mut operand = self.primary(parts.any()?)?;
-        for (k, suffix) in parts.enumerate() {
-            let suffix = suffix?;
-            if k == MAX_NESTING {
-                self.errors.push(SyntaxError::TooDeep { span: self.span(&suffix), limit: MAX_NESTING });
-                break;
-            }
-            operand = self.suffix(operand, suffix)?;
+    fn fold(&mut self, fold: &mut Fold, element: Element) {
+        let ends_arithmetic = element.ends_arithmetic();
+        fold.add(element);
+        if ends_arithmetic {
+            self.errors.append(&mut fold.errors);
         }
-        Ok(operand)
     }
 
-    fn suffix(&mut self, base: Operand, piece: Piece<'_>) -> Result<Operand, Unread> {
+    /// Hands on the operands, each with what stands behind it, and what joins them.
+    fn elements(
+        &mut self,
+        mut parts: Parts<'_>,
+        mut take: impl FnMut(&mut Self, Element),
+    ) -> Result<(), Unread> {
+        let mut operand: Option<Operand> = None;
+        let mut suffixes = 0;
+        while let Some(part) = parts.next().transpose()? {
+            let element = match part.rule() {
+                Rule::unit | Rule::field | Rule::call_args | Rule::subscript | Rule::prime => {
+                    suffixes += 1;
+                    operand = Some(self.suffix(operand.ok_or(Unread)?, part, suffixes)?);
+                    continue;
+                }
+                Rule::kw_not => Element::Prefix(Operator::Not, self.span(&part)),
+                Rule::negate => Element::Prefix(Operator::Neg, self.span(&part)),
+                Rule::operator => Element::Infix(arithmetic_operator(self.words(&part))),
+                Rule::compare_op => Element::Infix(Operator::Compare(compare_operator(self.words(&part)))),
+                Rule::kw_and => Element::Infix(Operator::And),
+                Rule::kw_or => Element::Infix(Operator::Or),
+                Rule::kw_is => Element::Is(self.plain_target(parts.expect(Rule::target)?)?),
+                _ => {
+                    suffixes = 0;
+                    operand = Some(self.primary(part)?);
+                    continue;
+                }
+            };
+            operand.take().into_iter().for_each(|operand| take(self, Element::Operand(operand)));
+            take(self, element);
+        }
+        operand.into_iter().for_each(|operand| take(self, Element::Operand(operand)));
+        Ok(())
+    }
+
+    /// An operand with what stands behind it; `number` counts that from 1.
+    fn suffix(&mut self, base: Operand, piece: Piece<'_>, number: usize) -> Result<Operand, Unread> {
+        if number > MAX_NESTING {
+            if number == MAX_NESTING + 1 {
+                self.errors.push(SyntaxError::TooDeep { span: self.span(&piece), limit: MAX_NESTING });
+            }
+            return Ok(base);
+        }
         let suffix_span = self.span(&piece);
         let (span, outer, mut height) = (base.outer.to(suffix_span), base.outer, base.height);
         let rule = piece.rule();
+        if rule == Rule::unit {
+            let ExprKind::Number { value, text, .. } = base.expr.kind else { return Err(Unread) };
+            let unit = Some(Box::new(self.unit(piece)));
+            return Ok(Operand::node(ExprKind::Number { value, text, unit }, span, 0));
+        }
         let mut parts = Parts::of(piece);
         let kind = match rule {
             Rule::field => {
@@ -153,9 +147,9 @@ impl Builder<'_> {
         let span = self.span(&piece);
         let mut height = 0;
         let kind = match piece.rule() {
-            Rule::number => self.number(piece)?,
+            Rule::literal => self.number(span),
             Rule::string => ExprKind::Text(self.text(piece).value),
-            Rule::value_name => ExprKind::Name(piece.as_str().to_string()),
+            Rule::value_name => ExprKind::Name(self.source.text[span.range()].to_string()),
             Rule::paren => {
                 let mut parts = Parts::of(piece);
                 parts.expect(Rule::open_paren)?;
@@ -178,16 +172,13 @@ impl Builder<'_> {
         Ok(Operand::node(kind, span, height))
     }
 
-    fn number(&mut self, piece: Piece<'_>) -> Result<ExprKind, Unread> {
-        let mut parts = Parts::of(piece);
-        let literal = parts.expect(Rule::literal)?;
-        let text = literal.as_str().to_string();
+    fn number(&mut self, span: Span) -> ExprKind {
+        let text = self.source.text[span.range()].to_string();
         let value = text.parse::<f64>().expect("the grammar's numbers are a subset of Rust's");
         if !value.is_finite() {
-            self.errors.push(SyntaxError::NumberTooLarge { span: self.span(&literal) });
+            self.errors.push(SyntaxError::NumberTooLarge { span });
         }
-        let unit = parts.next_if(Rule::unit)?.map(|unit| Box::new(self.unit(unit)));
-        Ok(ExprKind::Number { value, text, unit })
+        ExprKind::Number { value, text, unit: None }
     }
 
     fn quantifier(&mut self, mut parts: Parts<'_>, height: &mut usize) -> Result<ExprKind, Unread> {
@@ -237,5 +228,26 @@ impl Builder<'_> {
             ExprKind::And(_) | ExprKind::Or(_) => false,
         };
         only_units && (!indexable || text.contains(['/', '^']))
+    }
+}
+
+fn arithmetic_operator(sign: &str) -> Operator {
+    match sign {
+        "+" => Operator::Sum(SumOp::Add),
+        "-" => Operator::Sum(SumOp::Sub),
+        "*" => Operator::Product(ProductOp::Mul),
+        "/" => Operator::Product(ProductOp::Div),
+        _ => Operator::Power,
+    }
+}
+
+fn compare_operator(sign: &str) -> CompareOp {
+    match sign {
+        "<" => CompareOp::Less,
+        "<=" => CompareOp::LessEqual,
+        ">" => CompareOp::Greater,
+        ">=" => CompareOp::GreaterEqual,
+        "==" => CompareOp::Equal,
+        _ => CompareOp::NotEqual,
     }
 }

@@ -1,11 +1,11 @@
 //! Folds a flat list of operands and operators into a tree, by precedence.
 //!
-//! `or` < `and` < `not`, and `+ -` < `* /` < prefix `-` < `^`; `^` joins from the right, all others from the left. Operators
+//! `or` < `and` < `not` < comparisons < `+ -` < `* /` < prefix `-` < `^`; `^` joins from the right, all others from the left. Operators
 //! of one precedence become one flat chain, however many there are: the fold holds what waits for its right operand and
 //! nothing else.
 
 use crate::base::Span;
-use crate::syntax::ast::{Chain, ChainLink, Expr, ExprKind, ProductOp, SumOp, UnaryOp};
+use crate::syntax::ast::{Chain, ChainLink, CompareOp, Expr, ExprKind, ProductOp, SumOp, Target, UnaryOp};
 use crate::syntax::error::SyntaxError;
 
 /// An expression on its way into a tree.
@@ -50,6 +50,8 @@ pub enum Operator {
     And,
     /// `not`, a prefix
     Not,
+    /// `<` and its like, of which the grammar never joins two
+    Compare(CompareOp),
     /// `+` and `-`
     Sum(SumOp),
     /// `*` and `/`
@@ -66,10 +68,11 @@ impl Operator {
             Operator::Or => 0,
             Operator::And => 1,
             Operator::Not => 2,
-            Operator::Sum(_) => 3,
-            Operator::Product(_) => 4,
-            Operator::Neg => 5,
-            Operator::Power => 6,
+            Operator::Compare(_) => 3,
+            Operator::Sum(_) => 4,
+            Operator::Product(_) => 5,
+            Operator::Neg => 6,
+            Operator::Power => 7,
         }
     }
 
@@ -82,10 +85,39 @@ impl Operator {
 
 /// An operator that waits for its right operand.
 struct Waiting {
-    /// None of a prefix.
-    left: Option<Operand>,
+    left: Left,
     operator: Operator,
-    place: Span,
+}
+
+enum Left {
+    Operand(Operand),
+    /// A prefix has none, but a place of its own.
+    Prefix(Span),
+}
+
+/// What such a list consists of.
+pub enum Element {
+    /// An operand with what stands behind it.
+    Operand(Operand),
+    /// A prefix of the next operand, and its place.
+    Prefix(Operator, Span),
+    /// What joins the last operand with the next.
+    Infix(Operator),
+    /// `is` with its mode.
+    Is(Target),
+}
+
+impl Element {
+    /// Whether the sum before it is complete.
+    pub fn ends_arithmetic(&self) -> bool {
+        match self {
+            Element::Operand(_) | Element::Prefix(..) => false,
+            Element::Infix(operator) => {
+                operator.precedence() <= Operator::Compare(CompareOp::Less).precedence()
+            }
+            Element::Is(_) => true,
+        }
+    }
 }
 
 /// A list that is being folded: prefixes, an operand, an operator, and so on.
@@ -98,21 +130,28 @@ pub struct Fold {
 }
 
 impl Fold {
-    /// The next operand.
-    pub fn operand(&mut self, operand: Operand) {
-        self.operand = Some(operand);
-    }
-
-    /// A prefix of the next operand.
-    pub fn prefix(&mut self, operator: Operator, place: Span) {
-        self.waiting.push(Waiting { left: None, operator, place });
-    }
-
-    /// What joins the last operand with the next.
-    pub fn infix(&mut self, operator: Operator, place: Span) {
-        self.join_while(|waiting| waiting.goes_before(operator));
-        let left = self.operand.take();
-        self.waiting.push(Waiting { left, operator, place });
+    /// Adds what comes next.
+    pub fn add(&mut self, element: Element) {
+        match element {
+            Element::Operand(operand) => self.operand = Some(operand),
+            Element::Prefix(operator, place) => {
+                self.waiting.push(Waiting { left: Left::Prefix(place), operator });
+            }
+            Element::Infix(operator) => {
+                self.join_while(|waiting| waiting.goes_before(operator));
+                if let Some(left) = self.operand.take() {
+                    self.waiting.push(Waiting { left: Left::Operand(left), operator });
+                }
+            }
+            Element::Is(mode) => {
+                self.join_while(|waiting| waiting.precedence() > Operator::Not.precedence());
+                if let Some(left) = self.operand.take() {
+                    let (span, height) = (left.outer.to(mode.span), left.height);
+                    let kind = ExprKind::Is(left.boxed(), Box::new(mode));
+                    self.operand = Some(Operand::node(kind, span, height));
+                }
+            }
+        }
     }
 
     /// The tree of all operands; none, if there is none.
@@ -123,12 +162,12 @@ impl Fold {
 
     fn join_while(&mut self, goes_before: impl Fn(Operator) -> bool) {
         while self.waiting.last().is_some_and(|waiting| goes_before(waiting.operator))
-            && let (Some(Waiting { left, operator, place }), Some(right)) =
-                (self.waiting.pop(), self.operand.take())
+            && let Some(right) = self.operand.take()
+            && let Some(Waiting { left, operator }) = self.waiting.pop()
         {
             self.operand = Some(match left {
-                Some(left) => self.join(left, operator, right),
-                None => prefix(operator, place, right),
+                Left::Operand(left) => self.join(left, operator, right),
+                Left::Prefix(place) => prefix(operator, place, right),
             });
         }
     }
@@ -158,6 +197,7 @@ impl Fold {
                     Operator::Product(op) => {
                         ExprKind::Product(Chain::of(left.boxed(), op, right_outer, right.finished()))
                     }
+                    Operator::Compare(op) => ExprKind::Compare(op, left.boxed(), right.boxed()),
                     Operator::Power | Operator::Neg | Operator::Not => {
                         self.refuse_unit_behind_power(&left, &right);
                         return Operand::node(ExprKind::Power(left.boxed(), right.boxed()), outer, below);

@@ -5,6 +5,14 @@ use crate::syntax::ast::*;
 use crate::syntax::grammar::Rule;
 use crate::syntax::pieces::{Parts, Piece, Unread};
 
+/// What `record` is followed by.
+enum RecordWord {
+    /// A column; behind `every` the period.
+    Expr(Expr),
+    Every,
+    File(Text),
+}
+
 impl Builder<'_> {
     pub(super) fn item(&mut self, piece: Piece<'_>) -> Result<Item, Unread> {
         match piece.rule() {
@@ -78,22 +86,20 @@ impl Builder<'_> {
         parts.expect(Rule::kw_interaction)?;
         let name = self.name(parts.expect(Rule::name)?);
         let formals = self.formals(parts.expect(Rule::formals)?)?;
-        let mut items = Vec::new();
-        for part in parts {
-            let part = part?;
-            match part.rule() {
-                Rule::definition => items.push(InteractionItem::Let(self.definition(part)?)),
-                Rule::transition => items.push(InteractionItem::Transition(self.transition(part)?)),
-                _ => {}
-            }
-        }
-        items.shrink_to_fit();
+        let items = self.many_of(parts, |this, part| match part.rule() {
+            Rule::definition => Ok(Some(InteractionItem::Let(this.definition(part)?))),
+            Rule::transition => Ok(Some(InteractionItem::Transition(this.transition(part)?))),
+            _ => Ok(None),
+        })?;
         Ok(Interaction { name, formals, items, span })
     }
 
     fn system(&mut self, piece: Piece<'_>) -> Result<System, Unread> {
         let span = self.span(&piece);
-        let instances = self.list(Parts::of(piece).all(Rule::instance), Self::instance)?;
+        let instances = self.many_of(Parts::of(piece), |this, part| match part.rule() {
+            Rule::instance => this.instance(part).map(Some),
+            _ => Ok(None),
+        })?;
         Ok(System { instances, span })
     }
 
@@ -192,14 +198,10 @@ impl Builder<'_> {
 
     fn run(&mut self, piece: Piece<'_>) -> Result<Run, Unread> {
         let span = self.span(&piece);
-        let mut settings = Vec::new();
-        for part in Parts::of(piece) {
-            let part = part?;
-            let span = self.span(&part);
-            if let Some(kind) = self.setting(part)? {
-                settings.push(RunSetting { kind, span });
-            }
-        }
+        let settings = self.many_of(Parts::of(piece), |this, part| {
+            let span = this.span(&part);
+            Ok(this.setting(part)?.map(|kind| RunSetting { kind, span }))
+        })?;
         Ok(Run { settings, span })
     }
 
@@ -231,19 +233,29 @@ impl Builder<'_> {
         }))
     }
 
-    fn record(&mut self, mut parts: Parts<'_>) -> Result<RunSettingKind, Unread> {
-        parts.expect(Rule::kw_record)?;
-        let mut columns = vec![self.expr(parts.expect(Rule::expr)?)?];
-        while parts.has(Rule::comma)? {
-            columns.push(self.expr(parts.expect(Rule::expr)?)?);
+    fn record(&mut self, parts: Parts<'_>) -> Result<RunSettingKind, Unread> {
+        let words = self.many_of(parts, |this, part| {
+            Ok(match part.rule() {
+                Rule::expr => Some(RecordWord::Expr(this.expr(part)?)),
+                Rule::kw_every => Some(RecordWord::Every),
+                Rule::string => Some(RecordWord::File(this.text(part))),
+                _ => None,
+            })
+        })?;
+        let (mut columns, mut period, mut file, mut is_every) = (Vec::new(), None, None, false);
+        for word in words {
+            match word {
+                RecordWord::Every => is_every = true,
+                RecordWord::Expr(expr) if is_every => {
+                    self.refuse_unit_index(&expr);
+                    period = Some(expr);
+                }
+                RecordWord::Expr(expr) => columns.push(expr),
+                RecordWord::File(text) => file = Some(text),
+            }
         }
         columns.shrink_to_fit();
-        let period = match parts.has(Rule::kw_every)? {
-            true => Some(self.time(parts.expect(Rule::expr)?)?),
-            false => None,
-        };
-        parts.expect(Rule::kw_to)?;
-        Ok(RunSettingKind::Record { columns, period, file: self.text(parts.expect(Rule::string)?) })
+        Ok(RunSettingKind::Record { columns, period, file: file.ok_or(Unread)? })
     }
 
     /// An expression where a time, a rate or a setting stands.

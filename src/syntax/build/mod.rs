@@ -5,6 +5,7 @@
 //! names, calls of numbers, too large literals. Several such errors may come out of one text.
 
 mod fold;
+mod shared;
 mod items;
 mod agents;
 mod actions;
@@ -37,7 +38,8 @@ pub fn build_read(source: Source, mut pairs: Pairs<Rule>) -> Result<Outcome, Unr
 }
 
 fn outcome(piece: Piece) -> Result<Outcome, Unread> {
-    let mut builder = Builder { source: piece.source(), ended: Cell::new(0), errors: Vec::new() };
+    let mut builder =
+        Builder { source: piece.source(), ended: Cell::new(0), errors: Vec::new(), is_helper: false };
     let tree = builder.file(piece)?;
     Ok(if builder.errors.is_empty() { Ok(tree) } else { Err(builder.errors) })
 }
@@ -47,6 +49,8 @@ struct Builder<'t> {
     /// How many tokens had ended where the last piece did.
     ended: Cell<usize>,
     errors: Vec<SyntaxError>,
+    /// Whether it builds a part for another one, which waits.
+    is_helper: bool,
 }
 
 impl Builder<'_> {
@@ -105,25 +109,32 @@ impl Builder<'_> {
     }
 
     fn file(&mut self, piece: Piece<'_>) -> Result<Ast, Unread> {
-        let items = self.some_of(Parts::of(piece), |this, part| match part.rule() {
+        let items = self.many_of(Parts::of(piece), |this, part| match part.rule() {
             Rule::EOI => Ok(None),
             _ => this.item(part).map(Some),
         })?;
         Ok(Ast { items })
     }
 
+    /// The text of a piece, without what follows its last token.
+    fn words(&self, piece: &Piece<'_>) -> &str {
+        &self.source.text[self.span(piece).range()]
+    }
+
     fn name(&self, piece: Piece<'_>) -> Name {
-        Name { text: piece.as_str().to_string(), span: self.span(&piece) }
+        let span = self.span(&piece);
+        Name { text: self.source.text[span.range()].to_string(), span }
     }
 
     fn text(&self, piece: Piece<'_>) -> Text {
-        let quoted = piece.as_str();
-        Text { value: quoted[1..quoted.len() - 1].to_string(), span: self.span(&piece) }
+        let span = self.span(&piece);
+        let quoted = &self.source.text[span.range()];
+        Text { value: quoted[1..quoted.len() - 1].to_string(), span }
     }
 
     fn unit(&mut self, piece: Piece<'_>) -> UnitText {
         let span = self.span(&piece);
-        let bracketed = piece.as_str();
+        let bracketed = &self.source.text[span.range()];
         let text = bracketed[1..bracketed.len() - 1].trim().to_string();
         let belongs =
             |c: char| c.is_ascii_alphanumeric() || " _*/^.-()".contains(c) || UNIT_LETTERS.contains(&c);
