@@ -7,9 +7,9 @@ use std::fmt::Write;
 use crate::calculus::graph::NodeId;
 use crate::calculus::print::{self, Names, Sheet};
 use crate::calculus::system::{
-    ActionStep, AgentSystem, Atom, Birth, ClaimKind, Column, Condition, Destination, Flow, Frame, FunctionId,
-    Guard, KinkKind, LetValue, ModeSystem, Near, PairTransition, Quantified, Sender, Source, System, Target,
-    TransitionSystem, Trigger, VarRef,
+    ActionStep, AgentSystem, Atom, Birth, ClaimKind, Column, Condition, Destination, Flow, Fold, Frame,
+    FunctionId, Guard, KinkKind, LetValue, ModeSystem, Near, PairTransition, Quantified, Sender, Source,
+    System, Target, TransitionSystem, Trigger, VarRef,
 };
 
 /// The whole system as text; the same for the same system.
@@ -210,7 +210,8 @@ fn transition(
             block.line(6, format!("near: {}", range(&sheet, near, 1, "pairs")));
         }
         block.ranges(&sheet, &guard.condition, 6);
-        for fold in transition.frame.folds.iter().filter(|fold| fold.around.is_empty()) {
+        let changes = |fold: &&Fold| fold.moves || !fold.filter.atoms.is_empty();
+        for fold in transition.frame.folds.iter().filter(|fold| fold.around.is_empty()).filter(changes) {
             let (name, near) = (
                 transition.frame.slots[fold.slot].name(),
                 range(&sheet, &fold.near, fold.range.slot, "agents"),

@@ -88,8 +88,11 @@ impl Engine<'_, '_> {
             self.certified(index, self.time_end);
             return;
         }
-        let may_sleep = !blocked && fold::depth(self.program, kernel, &folds) == Depth::States;
-        if may_sleep && let Some(until) = self.sleep(index, (atom, &slots, &folds), from, to) {
+        let by_rates = fold::depth(self.program, kernel, &folds) != Depth::States;
+        if !blocked
+            && !by_rates
+            && let Some(until) = self.sleep(index, (atom, &slots, &folds), from, to)
+        {
             self.certified(index, until);
             return;
         }
@@ -121,6 +124,15 @@ impl Engine<'_, '_> {
                 self.note_undecided(index, from, to, WhyUndecided::TooManyPieces { limit });
                 self.certified(index, to);
             }
+            // Where a branch of a flow changes, rates go on by another one: it is looked at from there. Zero itself counts.
+            Search::Flip(flip)
+                if by_rates
+                    && !known.touching()
+                    && flip.time >= to - time_resolution(to)
+                    && self.ends_at_kink(&slots, to) =>
+            {
+                self.certified(index, to);
+            }
             Search::Flip(flip) => {
                 if flip.undecided {
                     self.n_undecided += 1;
@@ -138,6 +150,14 @@ impl Engine<'_, '_> {
                 self.queues.flips.push(Due { time: flip.time, number: index as u32, version: state.version });
             }
         }
+    }
+
+    /// Whether the step of an agent in some slots ends at `time` because a branch of its flow changes there.
+    fn ends_at_kink(&self, slots: &Slots, time: f64) -> bool {
+        slots.iter().filter(|&&agent| agent != ABSENT).any(|&agent| {
+            let group = &self.groups.groups[self.agents.agents[agent].group];
+            group.clock == time && !group.kinks.is_empty()
+        })
     }
 
     /// The first change of a comparison in (from, to]; and its truths there, if that is where it jumps.

@@ -100,3 +100,18 @@ fn rule_15_a_rate_that_jumps_where_something_else_fires() {
     );
     assert_eq!((run.value("a.n"), run.value("a.m")), (1.0, 1.0));
 }
+
+#[test]
+fn rule_15_where_a_branch_changes_a_rate_goes_on_by_the_other() {
+    let run = simulate_by_both_forms(
+        "agent A { state x = 0.5, y = 1.5, z = 0, w = 0
+           flow { x' = min(x, 1)  y' = -1  z' = abs(y)  w' = y - floor(y) }
+           over: when x' > 1 { }  below: when z' < 0 { }  under: when w' < 0 { }
+           full: when x' >= 1 { }  turned: when z' <= 0 { } }
+         system { a = A() }  run { until 3 }",
+    );
+    // x = e^t/2 is 1 at ln 2
+    all_near(&run.times("A.full"), &[2.0_f64.ln()], 1e-6);
+    all_near(&run.times("A.turned"), &[1.5], 1e-9);
+    assert_eq!(run.events.len(), 2, "{:?}", run.log());
+}
