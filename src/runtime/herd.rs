@@ -60,9 +60,9 @@ struct Looks {
 }
 
 /// No steps have been taken.
-const NO_LOOKS: Looks = Looks { left: 128, patience: 128 };
+const NO_LOOKS: Looks = Looks { left: 256, patience: 256 };
 /// The patience doubles from look to look up to this.
-const PATIENCE_MAX: u32 = 1024;
+const PATIENCE_MAX: u32 = 2048;
 
 impl Looks {
     /// Counts steps; whether somebody should look.
