@@ -439,6 +439,26 @@ pub struct Guard {
     pub n_rising: usize,
 }
 
+impl Guard {
+    /// What it is computed by: its comparisons, then its discrete tests.
+    pub fn functions(&self) -> Vec<FunctionId> {
+        let mut found: Vec<FunctionId> = self.atoms.iter().map(|atom| atom.value).collect();
+        let mut pending = vec![&self.condition];
+        while let Some(condition) = pending.pop() {
+            match condition {
+                Condition::Discrete(function) => found.push(*function),
+                Condition::And(terms) | Condition::Or(terms) => pending.extend(terms),
+                Condition::Exists(quantified) | Condition::Forall(quantified) => {
+                    pending.push(&quantified.body);
+                }
+                Condition::Rising(_, inner) => pending.push(inner),
+                Condition::Constant(_) | Condition::Atom(_) => {}
+            }
+        }
+        found
+    }
+}
+
 /// An invariant or an assert, whose guard is of its *negation*; or a condition of a property.
 #[derive(Clone, Debug)]
 pub struct ClaimSystem {

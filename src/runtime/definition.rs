@@ -388,25 +388,8 @@ pub fn folds_read(program: &Program, frame: &Frame, guard: &Guard) -> Vec<usize>
 }
 
 fn mark(program: &Program, frame: &Frame, guard: &Guard, read: &mut [bool]) {
-    for atom in &guard.atoms {
-        fold::read_by(frame, program.kernel(atom.value)).for_each(|number| read[number] = true);
-    }
-    mark_tests(program, frame, &guard.condition, read);
-}
-
-fn mark_tests(program: &Program, frame: &Frame, condition: &Condition, read: &mut [bool]) {
-    match condition {
-        Condition::Constant(_) | Condition::Atom(_) => {}
-        Condition::Discrete(function) => {
-            fold::read_by(frame, program.kernel(*function)).for_each(|number| read[number] = true);
-        }
-        Condition::And(all) | Condition::Or(all) => {
-            all.iter().for_each(|condition| mark_tests(program, frame, condition, read));
-        }
-        Condition::Exists(quantified) | Condition::Forall(quantified) => {
-            mark_tests(program, frame, &quantified.body, read);
-        }
-        Condition::Rising(_, condition) => mark_tests(program, frame, condition, read),
+    for function in guard.functions() {
+        fold::read_by(frame, program.kernel(function)).for_each(|number| read[number] = true);
     }
 }
 

@@ -7,7 +7,7 @@ use smallvec::{SmallVec, smallvec};
 use crate::codegen::kernel::{AgentBox, AgentView};
 use crate::codegen::program::{Atom, FunctionId};
 use crate::math::Interval;
-use crate::runtime::flow_rates::{rate_ranges, rates_at};
+use crate::runtime::flow_rates::{flow_rates_at, flow_rates_over};
 use crate::runtime::fold::{self, Folded};
 use crate::runtime::population::{ABSENT, Agents, Slots};
 use crate::runtime::present::{Boxes, Depth, Views};
@@ -93,23 +93,15 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
         for (k, &agent) in self.involved.iter().enumerate() {
             let (x, rest) = self.rows.numbers[3 * width * k..3 * width * (k + 1)].split_at_mut(width);
             let (dx, ddx) = rest.split_at_mut(width);
-            let n = agents.agents[agent].states.len();
             agents.agents[agent].segment.jet(t, x, dx, ddx);
-            if self.by_flow {
-                rates_at(agents, agent, t, &mut dx[..n], &mut ddx[..n]);
-            }
         }
+        self.put_flow_rates(t);
         let row = |agent: usize| {
             let Ok(k) = self.involved.binary_search(&agent) else {
                 return AgentView::absent(&self.rows.absent);
             };
-            let rows = &self.rows.numbers[3 * width * k..3 * width * (k + 1)];
-            AgentView {
-                states: &rows[..width],
-                rates: &rows[width..2 * width],
-                accelerations: &rows[2 * width..],
-                aux: &agents.agents[agent].aux,
-            }
+            let [states, rates, accelerations] = rows_of(&self.rows.numbers, width, k);
+            AgentView { states, rates, accelerations, aux: &agents.agents[agent].aux }
         };
         let leaves = fold::leaves(agents.program, self.folds, Depth::Accelerations, t, &row);
         let mut out = [0.0; 3];
@@ -133,9 +125,11 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
             }
         }
         let mut out = [Interval::WHOLE; 3];
-        self.put_flow(time, Interval::hull);
+        let of_flow = self.flow_ranges(time);
+        self.put_flow(&of_flow, Interval::hull);
         self.fold_rows(self.atom.rates, Depth::Accelerations, time, &mut out);
-        if self.put_flow(time, |_, of_flow| of_flow) {
+        if self.by_flow {
+            self.put_flow(&of_flow, |_, of_flow| of_flow);
             self.fold_rows(self.atom.value, Depth::States, time, &mut out);
         }
         out
@@ -149,13 +143,8 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
             let Ok(k) = self.involved.binary_search(&agent) else {
                 return AgentBox::absent(absent_box, absent);
             };
-            let rows = &boxes[3 * width * k..3 * width * (k + 1)];
-            AgentBox {
-                states: &rows[..width],
-                rates: &rows[width..2 * width],
-                accelerations: &rows[2 * width..],
-                aux: &agents.agents[agent].aux,
-            }
+            let [states, rates, accelerations] = rows_of(boxes, width, k);
+            AgentBox { states, rates, accelerations, aux: &agents.agents[agent].aux }
         };
         let leaves = fold::leaf_ranges(agents.program, self.folds, depth, time, registers, &row);
         let kernel = agents.program.kernel(function);
@@ -165,6 +154,11 @@ impl<'a, 'p> AtomCurve<'a, 'p> {
         }
         kernel.range(&boxes, time, registers, out);
     }
+}
+
+/// The rows of a place: states, rates, second rates.
+fn rows_of<T>(rows: &[T], width: usize, place: usize) -> [&[T]; 3] {
+    [0, 1, 2].map(|row| &rows[(3 * place + row) * width..][..width])
 }
 
 /// Puts a state, its rate and its second rate into the rows of a slot.
@@ -187,16 +181,7 @@ impl Curve for AtomCurve<'_, '_> {
             return self.folded_jet(t);
         }
         self.fill_numbers(self.atom.rates, &|segment, state| segment.state_jet(state, t));
-        if self.by_flow {
-            for (slot, &agent) in self.slots.iter().enumerate() {
-                if self.segment(slot).is_some() {
-                    let n = self.agents.agents[agent].states.len();
-                    let rows = &mut self.rows.numbers[3 * self.width * slot..][..3 * self.width];
-                    let (dx, ddx) = rows[self.width..].split_at_mut(self.width);
-                    rates_at(self.agents, agent, t, &mut dx[..n], &mut ddx[..n]);
-                }
-            }
-        }
+        self.put_flow_rates(t);
         let mut out = [0.0; 3];
         self.apply(self.atom.rates, t, &mut out);
         out
@@ -226,7 +211,8 @@ impl Curve for AtomCurve<'_, '_> {
         }
         let time = Interval { lo: t, hi: t };
         self.fill_boxes(t, t);
-        self.put_flow(time, |_, of_flow| of_flow);
+        let of_flow = self.flow_ranges(time);
+        self.put_flow(&of_flow, |_, of_flow| of_flow);
         self.any_turn(time, |turn| turn.mig() <= AT_TURN)
     }
 
@@ -244,9 +230,11 @@ impl Curve for AtomCurve<'_, '_> {
             return self.affine_range(s, e);
         }
         let mut out = [Interval::WHOLE; 3];
-        self.put_flow(time, Interval::hull);
+        let of_flow = self.flow_ranges(time);
+        self.put_flow(&of_flow, Interval::hull);
         self.evaluate(self.atom.rates, time, &mut out);
-        if self.put_flow(time, |_, of_flow| of_flow) {
+        if self.by_flow {
+            self.put_flow(&of_flow, |_, of_flow| of_flow);
             self.evaluate(self.atom.value, time, &mut out);
         }
         if s < e && !self.atom.smooth {
@@ -285,13 +273,8 @@ impl<'a> AtomCurve<'a, '_> {
                 if agent == ABSENT {
                     return AgentView::absent(&self.rows.absent);
                 }
-                let rows = &self.rows.numbers[3 * width * slot..3 * width * (slot + 1)];
-                AgentView {
-                    states: &rows[..width],
-                    rates: &rows[width..2 * width],
-                    accelerations: &rows[2 * width..],
-                    aux: &self.agents.agents[agent].aux,
-                }
+                let [states, rates, accelerations] = rows_of(&self.rows.numbers, width, slot);
+                AgentView { states, rates, accelerations, aux: &self.agents.agents[agent].aux }
             })
             .collect();
         if let Some(own) = self.own {
@@ -312,31 +295,51 @@ impl<'a> AtomCurve<'a, '_> {
         }
     }
 
-    /// Where the source reads rates: puts those of the flow into the boxes in place of the slopes of the segments, or beside
-    /// them. A rate of g is along the slopes; g itself is of the rates. False, and nothing is done, where it reads none.
-    fn put_flow(&mut self, time: Interval, join: impl Fn(Interval, Interval) -> Interval) -> bool {
+    /// Where the source reads rates: the places of rows with their agents.
+    fn places_by_flow(&self) -> Vec<(usize, usize)> {
         if !self.by_flow {
-            return false;
+            return Vec::new();
         }
-        let of_slots: Vec<(usize, usize)> = if self.folds.is_empty() {
-            let is_read = |&(slot, _): &(usize, &usize)| self.segment(slot).is_some();
-            self.slots.iter().enumerate().filter(is_read).map(|(slot, &agent)| (slot, agent)).collect()
-        } else {
-            self.involved.iter().copied().enumerate().collect()
-        };
+        if !self.folds.is_empty() {
+            return self.involved.iter().copied().enumerate().collect();
+        }
+        let is_read = |&(slot, _): &(usize, &usize)| self.segment(slot).is_some();
+        self.slots.iter().enumerate().filter(is_read).map(|(slot, &agent)| (slot, agent)).collect()
+    }
+
+    /// Where the source reads rates: puts those of the flow in place of the slopes of the segments.
+    fn put_flow_rates(&mut self, t: f64) {
         let width = self.width;
-        for (place, agent) in of_slots {
+        for (place, agent) in self.places_by_flow() {
             let n = self.agents.agents[agent].states.len();
-            let (mut rates, mut seconds) = (vec![Interval::WHOLE; n], vec![Interval::WHOLE; n]);
-            let CurveRows { boxes, registers, .. } = &mut *self.rows;
-            let span = (time.lo, time.hi);
-            if rate_ranges(self.agents, agent, span, registers, &mut rates, &mut seconds) {
-                let (dx, ddx) = boxes[3 * width * place..][width..3 * width].split_at_mut(width);
-                dx.iter_mut().zip(rates).for_each(|(slope, rate)| *slope = join(*slope, rate));
-                ddx[..n].copy_from_slice(&seconds);
-            }
+            let (dx, ddx) = self.rows.numbers[3 * width * place..][width..3 * width].split_at_mut(width);
+            flow_rates_at(self.agents, agent, t, &mut dx[..n], &mut ddx[..n]);
         }
-        true
+    }
+
+    /// Where the source reads rates: bounds of those of the flow, and of the second ones, by place.
+    fn flow_ranges(&mut self, time: Interval) -> Vec<(usize, [Vec<Interval>; 2])> {
+        let span = (time.lo, time.hi);
+        let places = self.places_by_flow().into_iter();
+        let bounds = |(place, agent)| {
+            Some((place, flow_rates_over(self.agents, agent, span, &mut self.rows.registers)?))
+        };
+        places.filter_map(bounds).collect()
+    }
+
+    /// Puts rates of the flow into the boxes in place of the slopes of the segments, or beside them. A rate of g is along the
+    /// slopes; g itself is of the rates.
+    fn put_flow(
+        &mut self,
+        of_flow: &[(usize, [Vec<Interval>; 2])],
+        join: impl Fn(Interval, Interval) -> Interval,
+    ) {
+        let width = self.width;
+        for (place, [rates, seconds]) in of_flow {
+            let (dx, ddx) = self.rows.boxes[3 * width * place..][width..3 * width].split_at_mut(width);
+            dx.iter_mut().zip(rates).for_each(|(slope, &rate)| *slope = join(*slope, rate));
+            ddx[..seconds.len()].copy_from_slice(seconds);
+        }
     }
 
     /// A function over the boxes.
@@ -350,13 +353,8 @@ impl<'a> AtomCurve<'a, '_> {
                 if agent == ABSENT {
                     return AgentBox::absent(&self.rows.absent_box, &self.rows.absent);
                 }
-                let rows = &self.rows.boxes[3 * width * slot..3 * width * (slot + 1)];
-                AgentBox {
-                    states: &rows[..width],
-                    rates: &rows[width..2 * width],
-                    accelerations: &rows[2 * width..],
-                    aux: &self.agents.agents[agent].aux,
-                }
+                let [states, rates, accelerations] = rows_of(&self.rows.boxes, width, slot);
+                AgentBox { states, rates, accelerations, aux: &self.agents.agents[agent].aux }
             })
             .collect();
         if let Some(own) = self.own {

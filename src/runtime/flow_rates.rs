@@ -17,11 +17,10 @@ use crate::runtime::solve::segment::Segment;
 /// States, rates and second rates of one agent: row after row.
 type Rows<T> = SmallVec<[T; 12]>;
 
-/// Overwrites the rates and the second rates of an agent at `t`, not cold, by those of its flow; false, and nothing is done, if
-/// its slopes are its rates.
-pub fn rates_at(agents: &Agents<'_>, agent: usize, t: f64, rates: &mut [f64], seconds: &mut [f64]) -> bool {
+/// Overwrites the rates and the second rates of an agent at `t`, not cold, by those of its flow, if its slopes are not its rates.
+pub fn flow_rates_at(agents: &Agents<'_>, agent: usize, t: f64, rates: &mut [f64], seconds: &mut [f64]) {
     if agents.agents[agent].segment.has_own_rates(t) {
-        return false;
+        return;
     }
     let flow = agents.flow(agent);
     let slots = agents.slots(&flow.frame, &[agent]);
@@ -50,20 +49,17 @@ pub fn rates_at(agents: &Agents<'_>, agent: usize, t: f64, rates: &mut [f64], se
         .collect();
     agents.program.kernel(flow.rates).eval(&views, t, rates);
     agents.program.kernel(flow.accelerations).eval(&views, t, seconds);
-    true
 }
 
-/// The same over [s, e]: bounds.
-pub fn rate_ranges(
+/// Bounds of the rates and the second rates of an agent over [s, e] by its flow; none if its slopes are its rates.
+pub fn flow_rates_over(
     agents: &Agents<'_>,
     agent: usize,
     (s, e): (f64, f64),
     registers: &mut Vec<Interval>,
-    rates: &mut [Interval],
-    seconds: &mut [Interval],
-) -> bool {
+) -> Option<[Vec<Interval>; 2]> {
     if agents.agents[agent].segment.has_own_rates(s) {
-        return false;
+        return None;
     }
     let flow = agents.flow(agent);
     let slots = agents.slots(&flow.frame, &[agent]);
@@ -88,9 +84,11 @@ pub fn rate_ranges(
         })
         .collect();
     let time = Interval { lo: s, hi: e };
-    agents.program.kernel(flow.rates).range(&boxes, time, registers, rates);
-    agents.program.kernel(flow.accelerations).range(&boxes, time, registers, seconds);
-    true
+    Some([flow.rates, flow.accelerations].map(|function| {
+        let mut bounds = vec![Interval::WHOLE; agents.agents[agent].states.len()];
+        agents.program.kernel(function).range(&boxes, time, registers, &mut bounds);
+        bounds
+    }))
 }
 
 /// Bounds of a state over [s, e], and of its slope, by its last step and those ahead of it.

@@ -1,6 +1,6 @@
 //! Which discrete variables any guard reads: what is written to others is nothing to look at (rule 14).
 
-use crate::codegen::program::{Condition, FunctionId, Guard, Trigger};
+use crate::codegen::program::{FunctionId, Guard, Trigger};
 use crate::runtime::definition::Definition;
 use crate::runtime::population::Agents;
 
@@ -28,10 +28,8 @@ impl Noticed {
 
     fn add(&mut self, agents: &Agents<'_>, definition: &Definition<'_>) {
         let frame = definition.frame;
-        let mut functions = Vec::new();
-        for guard in definition.guard.into_iter().chain(frame.folds.iter().map(|fold| &fold.filter)) {
-            collect(guard, &mut functions);
-        }
+        let guards = definition.guard.into_iter().chain(frame.folds.iter().map(|fold| &fold.filter));
+        let mut functions: Vec<FunctionId> = guards.flat_map(Guard::functions).collect();
         functions.extend(frame.folds.iter().filter_map(|fold| fold.term.as_ref()).map(|term| term.value));
         if let Some(Trigger::Chance { rate, .. }) = definition.trigger() {
             functions.push(*rate);
@@ -47,25 +45,5 @@ impl Noticed {
     pub fn any(&self, ty: usize, before: &[f64], now: &[f64]) -> bool {
         let is_other = |(before, now): (&f64, &f64)| before.to_bits() != now.to_bits();
         before.iter().zip(now).zip(&self.0[ty]).any(|(pair, &noticed)| noticed && is_other(pair))
-    }
-}
-
-/// The functions that say whether a guard holds.
-fn collect(guard: &Guard, functions: &mut Vec<FunctionId>) {
-    functions.extend(guard.atoms.iter().map(|atom| atom.value));
-    collect_tests(&guard.condition, functions);
-}
-
-fn collect_tests(condition: &Condition, functions: &mut Vec<FunctionId>) {
-    match condition {
-        Condition::Constant(_) | Condition::Atom(_) => {}
-        Condition::Discrete(function) => functions.push(*function),
-        Condition::And(all) | Condition::Or(all) => {
-            all.iter().for_each(|condition| collect_tests(condition, functions));
-        }
-        Condition::Exists(quantified) | Condition::Forall(quantified) => {
-            collect_tests(&quantified.body, functions);
-        }
-        Condition::Rising(_, condition) => collect_tests(condition, functions),
     }
 }

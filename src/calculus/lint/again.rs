@@ -91,7 +91,7 @@ impl<'s> Kept<'s> {
         for (leaf, interval) in restrictions(Reader::new(system, bounds, frame), guard) {
             reader.bound(leaf, interval);
         }
-        let before = functions(guard).into_iter().map(|function| (function, reader.function(function)));
+        let before = guard.functions().into_iter().map(|function| (function, reader.function(function)));
         let before = before.collect();
         let mut written = FxHashMap::default();
         for step in &effect.own.steps {
@@ -160,22 +160,6 @@ fn restrictions(mut reader: Reader, guard: &Guard) -> Vec<(Node, Interval)> {
         match found.iter_mut().find(|(known, _)| *known == leaf) {
             Some((_, known)) => *known = known.intersect(side).unwrap_or(*known),
             None => found.push((leaf, side)),
-        }
-    }
-    found
-}
-
-/// What a guard is computed by.
-fn functions(guard: &Guard) -> Vec<FunctionId> {
-    let mut found: Vec<FunctionId> = guard.atoms.iter().map(|atom| atom.value).collect();
-    let mut pending = vec![&guard.condition];
-    while let Some(condition) = pending.pop() {
-        match condition {
-            Condition::Discrete(function) => found.push(*function),
-            Condition::And(terms) | Condition::Or(terms) => pending.extend(terms),
-            Condition::Exists(quantified) | Condition::Forall(quantified) => pending.push(&quantified.body),
-            Condition::Rising(_, inner) => pending.push(inner),
-            Condition::Constant(_) | Condition::Atom(_) => {}
         }
     }
     found
