@@ -188,7 +188,7 @@ impl Engine<'_, '_> {
                 let members = self.groups.groups[number].members.clone();
                 members.iter().for_each(|&member| self.agents.divert(member));
                 self.doubt(&members, cover);
-                Ok(())
+                self.relist_turned(&members, cover)
             }
             Advance::Blocked(obstacle) => self.unblock(number, obstacle, cover),
         }

@@ -230,6 +230,18 @@ impl<'p> Engine<'p, '_> {
         done.map(|()| armed)
     }
 
+    /// The same of agents that have come to a kink of their flows at `time`, from which on they may leave their boxes.
+    pub fn relist_turned(&mut self, agents: &[usize], time: f64) -> Result<(), Failure> {
+        if !self.has_fields() {
+            return Ok(());
+        }
+        let present = self.present.time;
+        self.present.go(time);
+        let done = self.relist(agents, &[]);
+        self.present.go(present);
+        done.map(|_| ())
+    }
+
     fn relist_field(
         &mut self,
         field: &mut Field,

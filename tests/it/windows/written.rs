@@ -563,3 +563,17 @@ fn a_sum_of_those_who_are_near_from_the_first_instant_on() {
     let near = run.fast.events.iter().filter(|event| event.transition == "A.near" && event.time == 1.5);
     assert_eq!(near.map(|event| event.micro).collect::<Vec<_>>(), [1]);
 }
+
+/// Those of the first type are slow when the pairs are listed, and fast from a kink of their flow on.
+#[test]
+fn who_becomes_fast_at_a_kink_is_listed_there() {
+    let both = alike(
+        "agent A(x0: real) { state x: real = x0  discrete n: int = 0  flow { x' = if x > 0 then 300 else 1 } }
+         agent B(x0: real) { state x: real = x0  discrete n: int = 0  flow { x' = 0 } }
+         interaction hit(a: A, b: B) { near: when abs(a.x - b.x) <= 1 { a.n := a.n + 1  b.n := b.n + 1 } }
+         system { a = A[3](x0 = -1.01 - 0.3*index)  b = B[5](x0 = 100*(index + 1)) }
+         run { until 100 }",
+        15,
+    );
+    assert_eq!(both.fast.value("a[0].n"), 5.0);
+}
