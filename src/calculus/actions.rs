@@ -10,7 +10,7 @@ use crate::calculus::draft::Draft;
 use crate::calculus::error::Error;
 use crate::calculus::frame::{AgentRef, Scope, Value};
 use crate::calculus::guard;
-use crate::calculus::system::{ActionList, ActionStep, Condition, FunctionId, Guard, Target};
+use crate::calculus::system::{ActionList, ActionStep, Condition, Entry, FunctionId, Guard};
 use crate::model::ir::{Action, ExprId, Type, TypeId, VarRef};
 
 /// Lowers a list of actions in a scope; the frame is put in by whoever owns the scope, when it is complete.
@@ -136,12 +136,12 @@ fn numbers(
 }
 
 /// The column that is written, and its name.
-fn target(draft: &Draft, scope: &Scope, slot: usize, variable: VarRef) -> (Target, String) {
+fn target(draft: &Draft, scope: &Scope, slot: usize, variable: VarRef) -> (Entry, String) {
     let ty = scope.frame.slots[slot].ty();
     let model = &draft.model.types[TypeId::new(ty)];
     match variable {
-        VarRef::State(k) => (Target::State(k), model.states[k].name.clone()),
-        VarRef::Discrete(k) => (Target::Aux(draft.layout(ty).discrete(k)), model.discretes[k].name.clone()),
+        VarRef::State(k) => (Entry::State(k), model.states[k].name.clone()),
+        VarRef::Discrete(k) => (Entry::Aux(draft.layout(ty).discrete(k)), model.discretes[k].name.clone()),
         VarRef::Param(_) | VarRef::Link(_) | VarRef::Let(_) => {
             unreachable!("the model lets only states and discretes be written")
         }
@@ -149,7 +149,7 @@ fn target(draft: &Draft, scope: &Scope, slot: usize, variable: VarRef) -> (Targe
 }
 
 /// Who destroys an agent writes all of it.
-fn collect_writes(draft: &Draft, scope: &Scope, steps: &[ActionStep], writes: &mut Vec<(usize, Target)>) {
+fn collect_writes(draft: &Draft, scope: &Scope, steps: &[ActionStep], writes: &mut Vec<(usize, Entry)>) {
     for step in steps {
         match step {
             ActionStep::Assign { slot, target, .. } | ActionStep::Draw { slot, target, .. } => {
@@ -161,8 +161,8 @@ fn collect_writes(draft: &Draft, scope: &Scope, steps: &[ActionStep], writes: &m
             }
             ActionStep::Destroy { slot, .. } => {
                 let layout = draft.layout(scope.frame.slots[*slot].ty());
-                writes.extend((0..layout.n_states).map(|k| (*slot, Target::State(k))));
-                writes.extend((0..layout.n_discretes).map(|k| (*slot, Target::Aux(layout.discrete(k)))));
+                writes.extend((0..layout.n_states).map(|k| (*slot, Entry::State(k))));
+                writes.extend((0..layout.n_discretes).map(|k| (*slot, Entry::Aux(layout.discrete(k)))));
             }
             ActionStep::Emit { .. }
             | ActionStep::Goto { .. }

@@ -7,9 +7,9 @@ use std::fmt::Write;
 use crate::calculus::graph::NodeId;
 use crate::calculus::print::{self, Names, Sheet};
 use crate::calculus::system::{
-    ActionStep, AgentSystem, Atom, Birth, ClaimKind, Column, Condition, Destination, Flow, Fold, Frame,
-    FunctionId, Guard, KinkKind, LetValue, ModeSystem, Near, PairTransition, Quantified, Sender, Source,
-    System, Target, TransitionSystem, Trigger, VarRef,
+    ActionStep, AgentSystem, Atom, Birth, ClaimKind, Column, Condition, Destination, Entry, Flow, Fold,
+    Frame, FunctionId, Guard, KinkKind, LetValue, ModeSystem, Near, PairTransition, Quantified, Sender,
+    Source, System, TransitionSystem, Trigger, VarRef,
 };
 
 /// The whole system as text; the same for the same system.
@@ -250,7 +250,7 @@ fn range(sheet: &Sheet, near: &[Near], slot: usize, what: &str) -> String {
     }
     let bounds = near.iter().map(|&Near { own, other, within }| {
         let within: f64 = format!("{within:.5e}").parse().expect("a number is one");
-        format!("|{} - {}| <= {}", sheet.state(0, own), sheet.state(slot, other), print::constant(within))
+        format!("|{} - {}| <= {}", column(sheet, 0, own), column(sheet, slot, other), print::constant(within))
     });
     bounds.collect::<Vec<_>>().join(", ")
 }
@@ -496,9 +496,9 @@ impl<'a> Block<'a> {
 }
 
 /// The name of a column that is written.
-fn column(sheet: &Sheet, slot: usize, target: Target) -> String {
+fn column(sheet: &Sheet, slot: usize, target: Entry) -> String {
     match target {
-        Target::State(k) => sheet.state(slot, k),
-        Target::Aux(k) => sheet.aux(slot, k),
+        Entry::State(k) => sheet.state(slot, k),
+        Entry::Aux(k) => sheet.aux(slot, k),
     }
 }

@@ -5,7 +5,7 @@
 
 use crate::calculus::bounds::{Bounds, REAL};
 use crate::calculus::reader::Reader;
-use crate::calculus::system::{ActionList, ActionStep, FunctionId, Source, System, Target, VarRef};
+use crate::calculus::system::{ActionList, ActionStep, Entry, FunctionId, Source, System, VarRef};
 use crate::math::Interval;
 use crate::math::draw::Distribution;
 
@@ -122,13 +122,13 @@ fn go_round(system: &System, bounds: &mut Bounds) {
 }
 
 fn add(system: &System, bounds: &mut Bounds, list: &ActionList, types: &[usize]) {
-    if !list.writes.iter().any(|(_, target)| matches!(target, Target::Aux(_))) {
+    if !list.writes.iter().any(|(_, target)| matches!(target, Entry::Aux(_))) {
         return;
     }
     let mut given: Vec<(usize, usize, Interval)> = Vec::new();
     let mut reader = Reader::new(system, bounds, &list.frame);
     each_assignment(&list.steps, &mut |slot, target, value| {
-        if let (Target::Aux(column), Some(ty)) = (target, types.get(slot)) {
+        if let (Entry::Aux(column), Some(ty)) = (target, types.get(slot)) {
             let interval = match value {
                 Given::Value(value) => {
                     let value = reader.function(value);
@@ -155,7 +155,7 @@ enum Given {
 }
 
 /// Calls `each` with slot, column and value of every assignment, those in branches included.
-fn each_assignment(steps: &[ActionStep], each: &mut dyn FnMut(usize, Target, Given)) {
+fn each_assignment(steps: &[ActionStep], each: &mut dyn FnMut(usize, Entry, Given)) {
     for step in steps {
         match step {
             ActionStep::Assign { slot, target, value, .. } => each(*slot, *target, Given::Value(*value)),

@@ -85,11 +85,11 @@ pub struct Column {
     pub boolean: bool,
 }
 
-/// A column that actions write.
+/// A value of an agent by where it stands in its rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Target {
+pub enum Entry {
     /// A state.
     State(usize),
-    /// A discrete variable, by its auxiliary column (absolute index).
+    /// A parameter or a discrete variable, by its auxiliary column (absolute index).
     Aux(usize),
 }

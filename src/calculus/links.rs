@@ -83,7 +83,8 @@ fn update(
             let better = Cond::And(vec![filter, Cond::Or(vec![absent, nearer])]);
             let better = Cond::Quantified(Quantifier::Exists, range, Box::new(better));
             let strays = Cond::Or(vec![better, Cond::And(vec![present, lost])]);
-            (strays, Whither::Nearest { range, filter: alone, key })
+            let target = Whither::Nearest { range, filter: alone, key, near: Vec::new(), keys: Vec::new() };
+            (strays, target)
         }
     };
     let stale = Cond::And(vec![holds.clone(), strays]);

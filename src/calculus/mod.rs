@@ -10,8 +10,8 @@
 pub mod graph;
 mod nonnegative;
 mod relation;
-mod range;
 mod layout;
+mod range;
 mod slot;
 pub mod system;
 pub mod access;

@@ -5,6 +5,8 @@
 //! only depends on x - y then only depends on d, however it is written. Such a D is one for which the condition is settled both
 //! for d in [D, oo) and for d in (-oo, -D], by intervals; the larger D, the easier, so the least one is found by bisection.
 //!
+//! Of `nearest` that depends on the link: see [`Keys`]. Who is farther away than the agent to which it leads does not matter.
+//!
 //! Everything else is unbounded: other states, rates, aggregates. Parameters and discrete variables are in the hull of what they
 //! have in this population and of what actions give them; the time ends with the run. Boundaries count as true: an
 //! event is found where g = 0.
@@ -17,7 +19,8 @@ use crate::calculus::graph::Node;
 use crate::calculus::growth;
 use crate::calculus::reader::Reader;
 use crate::calculus::system::{
-    Atom, Condition, Frame, FunctionId, Guard, Near, Quantified, Relation, Slot, System, Trigger,
+    AgentSystem, Atom, Condition, Entry, Frame, FunctionId, Guard, Keys, LinkUpdate, Near, Quantified,
+    Relation, Slot, System, Trigger, Whither,
 };
 use crate::math::Interval;
 
@@ -64,6 +67,10 @@ pub fn ranges(mut system: System) -> System {
         let of_claims = modes.iter_mut().flat_map(|mode| &mut mode.claims).map(|claim| &mut claim.frame);
         frames.chain(of_claims).for_each(|frame| aggregates(&system, &bounds, frame));
         (system.types[number].transitions, system.types[number].modes) = (transitions, modes);
+        let mut links = std::mem::take(&mut system.types[number].links);
+        let updates = links.iter_mut().flat_map(|link| &mut link.updates);
+        updates.for_each(|update| nearest(&system, &bounds, update));
+        system.types[number].links = links;
     }
     system
 }
@@ -80,14 +87,30 @@ fn aggregates(system: &System, bounds: &Bounds, frame: &mut Frame) {
     frame.folds.iter_mut().zip(ranges).for_each(|(fold, near)| fold.near = near);
 }
 
+/// The ranges of a link to whoever is nearest.
+fn nearest(system: &System, bounds: &Bounds, update: &mut LinkUpdate) {
+    let Whither::Nearest { range, filter, key, near, keys } = &mut update.target else { return };
+    let asker = Asker { system, bounds, frame: &update.frame, atoms: &filter.atoms };
+    (*near, *keys) = asker.nearest(&filter.condition, *key, range.slot).into_iter().unzip();
+    let mut conditions = vec![&mut update.stale.condition];
+    while let Some(condition) = conditions.pop() {
+        match condition {
+            Condition::And(terms) | Condition::Or(terms) => conditions.extend(terms),
+            Condition::Exists(better) if better.slot == range.slot => better.near.clone_from(near),
+            _ => {}
+        }
+    }
+}
+
 /// Whether any condition is over more than one agent that is not named by a link.
 fn has_pairs(system: &System) -> bool {
     let binds = |frame: &Frame| frame.slots.iter().skip(1).any(|slot| matches!(slot, Slot::Root { .. }));
-    let of_type = |ty: &crate::calculus::system::AgentSystem| {
+    let of_type = |ty: &AgentSystem| {
         let claims = ty.modes.iter().flat_map(|mode| &mode.claims).map(|claim| &claim.frame);
         claims.chain(ty.transitions.iter().map(|transition| &transition.frame)).any(binds)
     };
-    !system.interactions.is_empty() || system.types.iter().any(of_type)
+    let has_links = |ty: &AgentSystem| ty.links.iter().any(|link| !link.updates.is_empty());
+    !system.interactions.is_empty() || system.types.iter().any(|ty| of_type(ty) || has_links(ty))
 }
 
 fn guard_of(trigger: &mut Trigger) -> Option<&mut Guard> {
@@ -142,9 +165,53 @@ impl Asker<'_> {
         let candidates = self.candidates(&functions, slot);
         let ranges = candidates.into_iter().filter_map(|(own, other)| {
             let within = self.range(condition, &functions, [own, other], slot, far)?;
-            Some(Near { own: own as usize, other: other as usize, within })
+            Some(Near { own, other, within })
         });
         ranges.collect()
+    }
+
+    /// How near an agent must be whose key is less than some number, if `filter` holds for it.
+    fn nearest(&self, filter: &Condition, key: FunctionId, slot: usize) -> Vec<(Near, Keys)> {
+        let graph = &self.system.graph;
+        let read = graph.reach(&self.system.functions[key].outputs);
+        let mut slots = read.iter().filter_map(|&id| graph.node(id).slot());
+        if self.atoms.len() > ATOMS_MAX || !slots.all(|read| read == 0 || read == slot) {
+            return Vec::new();
+        }
+        let mut functions = vec![key];
+        self.functions(filter, &mut functions);
+        let candidates = self.candidates(&functions, slot);
+        let ranges = candidates.into_iter().filter_map(|(own, other)| {
+            let within = self.range(filter, &functions, [own, other], slot, Settled::False);
+            let within = within.unwrap_or(f64::INFINITY);
+            let keys = self.apart(&functions, [own, other], slot, &|values| {
+                let excluded = self.is_settled(filter, Settled::False, values);
+                if excluded { f64::INFINITY } else { values(key).lo }
+            });
+            let says = within.is_finite() || !keys.is_empty();
+            says.then_some((Near { own, other, within }, keys))
+        });
+        ranges.collect()
+    }
+
+    /// The least of something over all who are so far apart in states [own, other], for each distance.
+    fn apart(
+        &self,
+        functions: &[FunctionId],
+        [own, other]: [Entry; 2],
+        slot: usize,
+        least: &dyn Fn(&dyn Fn(FunctionId) -> Interval) -> f64,
+    ) -> Keys {
+        let (reader, forms) = self.gap_reader(functions, [own, other], slot);
+        Keys::new(|within| {
+            let sides = [Interval::new(within, REAL.hi), Interval::new(REAL.lo, -within)];
+            let of_side = sides.map(|side| {
+                let narrowed = reader.forms.narrowed(GAP, side);
+                least(&|function| narrowed.interval(forms[&function]))
+            });
+            let least = of_side[0].min(of_side[1]);
+            if least < -FAR { f64::NEG_INFINITY } else { least }
+        })
     }
 
     /// Everything that a condition computes.
@@ -163,8 +230,8 @@ impl Asker<'_> {
         }
     }
 
-    /// The pairs of states of which some sum has the difference, in order.
-    fn candidates(&self, functions: &[FunctionId], slot: usize) -> Vec<(u32, u32)> {
+    /// The pairs of states, or of columns, of which some sum has the difference, in order.
+    fn candidates(&self, functions: &[FunctionId], slot: usize) -> Vec<(Entry, Entry)> {
         let mut reader = self.reader(functions, None);
         functions.iter().for_each(|&function| {
             reader.function(function);
@@ -172,12 +239,19 @@ impl Asker<'_> {
         let states = |form: &Form, of: usize| {
             let leaves = form.terms.iter().map(|&(term, factor)| (reader.forms.leaf_of(term), factor));
             let states = leaves.filter_map(|(leaf, factor)| match leaf {
-                Some(Node::State { slot, column }) if slot as usize == of => Some((column, factor)),
+                Some(Node::State { slot, column }) if slot as usize == of => {
+                    Some((Entry::State(column as usize), factor))
+                }
+                Some(Node::Aux { slot, column }) if slot as usize == of => {
+                    let layout = &self.system.types[self.frame.slots[of].ty()].layout;
+                    let is_variable = (layout.param(0)..layout.link(0)).contains(&(column as usize));
+                    is_variable.then_some((Entry::Aux(column as usize), factor))
+                }
                 _ => None,
             });
             states.collect::<Vec<_>>()
         };
-        let mut found: Vec<(u32, u32)> = Vec::new();
+        let mut found: Vec<(Entry, Entry)> = Vec::new();
         for form in reader.forms.all() {
             let others = states(form, slot);
             for (own, factor) in states(form, 0) {
@@ -214,7 +288,11 @@ impl Asker<'_> {
             given.insert(node, form);
         }
         if let Some([own, other]) = gap {
-            let (other, gap) = (reader.forms.leaf(other, REAL), reader.forms.leaf(GAP, REAL));
+            let of_other = match other {
+                Node::State { .. } => REAL,
+                column => self.bounds.leaf(self.frame, column),
+            };
+            let (other, gap) = (reader.forms.leaf(other, of_other), reader.forms.leaf(GAP, REAL));
             let sum = reader.forms.plus(other, 1.0, gap).expect("both are finite");
             given.insert(own, sum);
         }
@@ -227,14 +305,11 @@ impl Asker<'_> {
         &self,
         condition: &Condition,
         functions: &[FunctionId],
-        [own, other]: [u32; 2],
+        [own, other]: [Entry; 2],
         slot: usize,
         far: Settled,
     ) -> Option<f64> {
-        let states = [Node::State { slot: 0, column: own }, Node::State { slot: slot as u32, column: other }];
-        let mut reader = self.reader(functions, Some(states));
-        let forms: FxHashMap<FunctionId, FormId> =
-            functions.iter().map(|&function| (function, reader.function(function))).collect();
+        let (reader, forms) = self.gap_reader(functions, [own, other], slot);
         least(|within| {
             let sides = [Interval::new(within, REAL.hi), Interval::new(REAL.lo, -within)];
             sides.into_iter().all(|side| {
@@ -242,6 +317,18 @@ impl Asker<'_> {
                 self.is_settled(condition, far, &|function| narrowed.interval(forms[&function]))
             })
         })
+    }
+
+    /// A reader with the forms of some functions, in which [own, other] have the difference d.
+    fn gap_reader(
+        &self,
+        functions: &[FunctionId],
+        [own, other]: [Entry; 2],
+        slot: usize,
+    ) -> (Reader<'_>, FxHashMap<FunctionId, FormId>) {
+        let mut reader = self.reader(functions, Some([leaf(0, own), leaf(slot, other)]));
+        let forms = functions.iter().map(|&function| (function, reader.function(function))).collect();
+        (reader, forms)
     }
 
     /// Whether a condition certainly is what it is to be, for all values of its functions.
@@ -279,6 +366,14 @@ impl Asker<'_> {
             (Condition::Rising(_, inner), Settled::False) => of(inner),
             (Condition::Rising(..), Settled::True) => false,
         }
+    }
+}
+
+fn leaf(slot: usize, entry: Entry) -> Node {
+    let slot = slot as u32;
+    match entry {
+        Entry::State(column) => Node::State { slot, column: column as u32 },
+        Entry::Aux(column) => Node::Aux { slot, column: column as u32 },
     }
 }
 

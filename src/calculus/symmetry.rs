@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 use crate::calculus::draft::Draft;
 use crate::calculus::graph::{Graph, Node, NodeId};
 use crate::calculus::system::{
-    ActionStep, Birth, Condition, Frame, FunctionId, Guard, Quantified, Relation, Slot, Source, Target,
+    ActionStep, Birth, Condition, Entry, Frame, FunctionId, Guard, Quantified, Relation, Slot, Source,
     TransitionSystem, Trigger, VarRef,
 };
 use crate::math::Op;
@@ -330,10 +330,10 @@ impl<'a> Former<'a> {
 }
 
 /// Kind and number of a column.
-fn column(target: &Target) -> [usize; 2] {
+fn column(target: &Entry) -> [usize; 2] {
     match target {
-        Target::State(k) => [0, *k],
-        Target::Aux(k) => [1, *k],
+        Entry::State(k) => [0, *k],
+        Entry::Aux(k) => [1, *k],
     }
 }
 

@@ -13,8 +13,8 @@ use std::sync::Arc;
 
 use crate::base::{Arena, Idx, Span};
 use crate::calculus::graph::{Graph, NodeId};
-pub use crate::calculus::layout::{Column, Layout, Target};
-pub use crate::calculus::range::{Near, Range};
+pub use crate::calculus::layout::{Column, Entry, Layout};
+pub use crate::calculus::range::{Keys, Near, Range};
 pub use crate::calculus::relation::Relation;
 pub use crate::calculus::slot::Slot;
 pub use crate::math::draw::Distribution;
@@ -197,6 +197,10 @@ pub enum Whither {
         filter: Guard,
         /// One output.
         key: FunctionId,
+        /// How near an agent must be to be nearer than whom the link leads to: see `keys`. Empty: that does not follow.
+        near: Vec<Near>,
+        /// For each of these, how near that is: the lesser of both bounds holds.
+        keys: Vec<Keys>,
     },
 }
 

@@ -104,12 +104,16 @@ pub(super) fn reaches(program: &Program) -> Vec<Reach> {
     for interaction in program.interactions.iter().filter(|pair| pair.types[0] == pair.types[1]) {
         let ty = interaction.types[0];
         for near in interaction.transitions.iter().map(|pair| &pair.near) {
-            let alike: Vec<&Near> = near.iter().filter(|near| near.own == near.other).collect();
-            for (k, a) in alike.iter().enumerate() {
-                for b in &alike[k + 1..] {
-                    let scale = program.types[ty].states[a.own].scale;
-                    let reach = Reach { ty, states: [a.own, b.own], within: scale.from_si(a.within) };
-                    if same(a.within, b.within) && !found.contains(&reach) {
+            let of_one_state = |near: &Near| match near.states()? {
+                [own, other] if own == other => Some((own, near.within)),
+                _ => None,
+            };
+            let alike: Vec<(usize, f64)> = near.iter().filter_map(of_one_state).collect();
+            for (k, &(a, within)) in alike.iter().enumerate() {
+                for &(b, other) in &alike[k + 1..] {
+                    let scale = program.types[ty].states[a].scale;
+                    let reach = Reach { ty, states: [a, b], within: scale.from_si(within) };
+                    if same(within, other) && !found.contains(&reach) {
                         found.push(reach);
                     }
                 }

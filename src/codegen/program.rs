@@ -9,10 +9,10 @@ use crate::calculus::system::Function;
 pub use crate::calculus::system::FunctionId;
 pub use crate::calculus::system::{
     ActionList, ActionStep, AgentSystem, Aggregate, Atom, Birth, ClaimKind, ClaimSystem, Column, Condition,
-    Destination, Distribution, Flow, Fold, Formula, Frame, Guard, Initials, Inside, Integrator,
-    InteractionSystem, Jumps, Kink, KinkKind, Layout, LetSystem, LetValue, LinkUpdate, ModeSystem, Near,
-    PairTransition, Population, Property, Quantified, Range, Record, Relation, Run, Sender, Slot, Source,
-    Target, Term, TransitionSystem, Trigger, VarRef, Watch, Whither,
+    Destination, Distribution, Entry, Flow, Fold, Formula, Frame, Guard, Initials, Inside, Integrator,
+    InteractionSystem, Jumps, Keys, Kink, KinkKind, Layout, LetSystem, LetValue, LinkUpdate, ModeSystem,
+    Near, PairTransition, Population, Property, Quantified, Range, Record, Relation, Run, Sender, Slot,
+    Source, Term, TransitionSystem, Trigger, VarRef, Watch, Whither,
 };
 use crate::codegen::kernel::{Kernel, StepKernel};
 use crate::codegen::later::Later;

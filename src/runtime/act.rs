@@ -4,7 +4,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::base::Span;
 use crate::codegen::program::{
-    ActionList, ActionStep, Destination, Frame, FunctionId, Layout, Target, TransitionSystem,
+    ActionList, ActionStep, Destination, Entry, Frame, FunctionId, Layout, TransitionSystem,
 };
 use crate::codegen::trace::{Blame, Point};
 use crate::runtime::advance::cut;
@@ -25,7 +25,7 @@ pub struct Write {
     /// Whose.
     pub agent: usize,
     /// Which column.
-    pub target: Target,
+    pub target: Entry,
     /// Its value.
     pub value: f64,
     /// The assignment.
@@ -214,8 +214,8 @@ impl Engine<'_, '_> {
     pub fn action_not_finite(&mut self, write: &Write, blame: Option<Blame>) -> Reason {
         let system = &self.program.types[self.agents.agents[write.agent].ty];
         let variable = match write.target {
-            Target::State(k) => system.state_name(k),
-            Target::Aux(column) => system.discretes[column - system.layout.discrete(0)].name.clone(),
+            Entry::State(k) => system.state_name(k),
+            Entry::Aux(column) => system.discretes[column - system.layout.discrete(0)].name.clone(),
         };
         Reason::ActionNotFinite {
             place: self.place(write.agent),
@@ -294,11 +294,11 @@ impl Engine<'_, '_> {
         self.remember(write.agent, written);
         self.agents.changes += 1;
         match write.target {
-            Target::State(k) => {
+            Entry::State(k) => {
                 self.restart(write.agent, written);
                 self.agents.agents[write.agent].states[k] = write.value;
             }
-            Target::Aux(column) => {
+            Entry::Aux(column) => {
                 self.restart_readers(write.agent, column, written);
                 self.agents.agents[write.agent].aux[column] = write.value;
             }
@@ -424,7 +424,7 @@ impl Engine<'_, '_> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Claimed {
     /// A column of an agent, which it may write.
-    Column(Target),
+    Column(Entry),
     /// A region of an agent, by its number among those of its type.
     Region(usize),
 }

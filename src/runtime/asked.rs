@@ -17,6 +17,8 @@ pub struct Question<'q> {
     pub frame: &'q Frame,
     /// Those that `other` leaves out.
     pub own: &'q [usize],
+    /// An instance that follows the same condition along the flow, if there is one: its candidates are all who matter.
+    pub followed: Option<u32>,
 }
 
 impl Engine<'_, '_> {
@@ -62,7 +64,13 @@ impl Engine<'_, '_> {
             Condition::Or(all) => all.iter().any(|condition| self.is_so(question, side, condition, slots)),
             Condition::Exists(quantified) | Condition::Forall(quantified) => {
                 let exists = matches!(condition, Condition::Exists(_));
-                let range = self.agents.of_type[quantified.ty].clone();
+                let near = question
+                    .followed
+                    .and_then(|instance| self.guards.candidates_at(instance, quantified.slot));
+                let range: Vec<usize> = match near {
+                    Some(near) => near.iter().map(|candidate| candidate.agent as usize).collect(),
+                    None => self.agents.of_type[quantified.ty].clone(),
+                };
                 let found = range.into_iter().any(|agent| {
                     if !allowed(quantified, question.own, agent) {
                         return false;

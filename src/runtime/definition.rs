@@ -5,7 +5,7 @@
 
 use crate::codegen::program::{
     Atom, ClaimKind, ClaimSystem, Condition, Frame, Guard, LinkUpdate, Near, PairTransition, Program,
-    Quantified, Range, Relation, Slot, TransitionSystem, Trigger,
+    Quantified, Range, Relation, Slot, TransitionSystem, Trigger, Whither,
 };
 use crate::runtime::fold::{self, Shared};
 use crate::runtime::population::Agents;
@@ -260,10 +260,16 @@ impl<'p> Definition<'p> {
     fn find_nearby(&mut self, agents: &Agents<'_>) {
         let Some(guard) = self.guard else { return };
         let mut found = Vec::new();
-        if matches!(self.origin, Origin::Pair(_) | Origin::Link(_))
+        if matches!(self.origin, Origin::Pair(_))
             || self.n_rising > 0
             || !ranged(&guard.condition, &mut found)
             || !self.folds.is_empty() && !self.are_ranged()
+        {
+            return;
+        }
+        if let Origin::Link(LinkUpdate { target, .. }) = self.origin
+            && !matches!(target, Whither::Nearest { range, .. }
+                if self.folds.is_empty() && found.iter().all(|(found, _)| found.slot == range.slot))
         {
             return;
         }
@@ -358,6 +364,20 @@ impl Definition<'_> {
     pub fn lay_out(&mut self, agents: &Agents<'_>) {
         self.n_atoms = lay_out(agents, &mut self.atoms);
         self.n_rising = lay_out(agents, &mut self.rising);
+    }
+
+    /// How many entries its instances take: themselves and their comparisons.
+    pub fn size(&self, agents: &Agents<'_>) -> u128 {
+        let n = agents.of_type[self.ty].len() as u128;
+        let each = 1 + self.n_atoms as u128;
+        match self.origin {
+            Origin::Pair(pair) => {
+                let other = agents.of_type[self.frame.slots[1].ty()].len() as u128;
+                let pairs = n * other;
+                each * if pair.symmetric { pairs / 2 } else { pairs }
+            }
+            Origin::Transition(_) | Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => each * n,
+        }
     }
 
     /// Whether comparisons of it are bound to agents of a type.

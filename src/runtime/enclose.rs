@@ -43,10 +43,15 @@ struct Kept {
     rates: Vec<Interval>,
 }
 
+/// The boxes of the states of agents whom others follow.
+pub type Leader<'a> = dyn Fn(usize) -> Option<&'a [Interval]> + 'a;
+
 /// Bounds over a stretch this many times longer than what is asked for are good enough.
 const LOOSE: f64 = 16.0;
 /// How many bounds are kept for a group.
 const KEPT_MAX: usize = 6;
+/// Into how many pieces a stretch is divided before it is given up.
+const PIECES_MAX: f64 = 64.0;
 /// How often a box is made larger before its horizon is given up.
 const TRIES: usize = 4;
 
@@ -179,7 +184,8 @@ impl Enclosures {
         if version == group.version && horizon >= length && t <= asked + 0.25 * length {
             return None;
         }
-        let Some(rates) = self.picard(agents, group, t, 1.5 * horizon) else {
+        let start = start(agents, group, t);
+        let Some(rates) = self.picard(agents, group, &start, t, 1.5 * horizon, &|_| None) else {
             self.failed[number] = (group.version, t, horizon);
             return None;
         };
@@ -194,25 +200,55 @@ impl Enclosures {
         Some(oldest)
     }
 
-    /// Bounds of the rates over a box that Picard's operator maps into itself; none if none is found.
-    fn picard(&mut self, agents: &Agents<'_>, group: &Group, t: f64, horizon: f64) -> Option<Vec<Interval>> {
-        let mut start = Vec::new();
-        for &member in &group.members {
-            let first = start.len();
-            start.resize(first + agents.agents[member].states.len(), 0.0);
-            agents.states_at(member, t, &mut start[first..]);
+    /// Boxes of the states of a group's members over [t, end], one after the other, by those of the agents whom they follow;
+    /// none if none are found.
+    pub fn led(
+        &mut self,
+        agents: &Agents<'_>,
+        group: &Group,
+        leader: &Leader<'_>,
+        (t, end): (f64, f64),
+    ) -> Option<Vec<Interval>> {
+        let mut start = start(agents, group, t);
+        let mut boxes = start.clone();
+        let (mut from, mut length) = (t, end - t);
+        let least = (end - t) / PIECES_MAX;
+        while from < end {
+            length = length.min(end - from);
+            let Some(rates) = self.picard(agents, group, &start, from, length, leader) else {
+                length *= 0.5;
+                if length < least {
+                    return None;
+                }
+                continue;
+            };
+            let (all, last) = (Interval { lo: 0.0, hi: length }, Interval { lo: length, hi: length });
+            for ((start, bound), &rate) in start.iter_mut().zip(&mut boxes).zip(&rates) {
+                *bound = bound.hull(self.accuracy.padded(start.add(all.mul(rate))));
+                *start = self.accuracy.padded(start.add(last.mul(rate)));
+            }
+            from = if from + length > from { from + length } else { end };
         }
+        Some(boxes)
+    }
+
+    /// Bounds of the rates over a box that Picard's operator maps into itself, from a box at `t` on; none if none is found.
+    fn picard(
+        &mut self,
+        agents: &Agents<'_>,
+        group: &Group,
+        start: &[Interval],
+        t: f64,
+        horizon: f64,
+        leader: &Leader<'_>,
+    ) -> Option<Vec<Interval>> {
         let time = Interval { lo: t, hi: t + horizon };
         let span = Interval { lo: 0.0, hi: horizon };
-        let mut guess: Vec<Interval> =
-            start.iter().map(|&x| self.accuracy.padded(Interval { lo: x, hi: x })).collect();
+        let mut guess: Vec<Interval> = start.iter().map(|&bound| self.accuracy.padded(bound)).collect();
         for _ in 0..TRIES {
-            let rates = self.rates(agents, group, &guess, time);
-            let image: Vec<Interval> = start
-                .iter()
-                .zip(&rates)
-                .map(|(&x, &rate)| Interval { lo: x, hi: x }.add(span.mul(rate)))
-                .collect();
+            let rates = self.rates(agents, group, &guess, time, leader);
+            let image: Vec<Interval> =
+                start.iter().zip(&rates).map(|(start, &rate)| start.add(span.mul(rate))).collect();
             if !image.iter().all(|bound| bound.is_finite()) {
                 return None;
             }
@@ -237,6 +273,7 @@ impl Enclosures {
         group: &Group,
         guess: &[Interval],
         time: Interval,
+        leader: &Leader<'_>,
     ) -> Vec<Interval> {
         let mut all = Vec::with_capacity(guess.len());
         for &member in &group.members {
@@ -250,7 +287,7 @@ impl Enclosures {
                         return AgentBox::absent(&self.absent, &self.absent_aux);
                     }
                     let mut first = 0;
-                    let mut states: &[Interval] = &[];
+                    let mut states: &[Interval] = leader(agent).unwrap_or(&[]);
                     for &other in &group.members {
                         let n = agents.agents[other].states.len();
                         if other == agent {
@@ -269,6 +306,17 @@ impl Enclosures {
         }
         all
     }
+}
+
+/// The states of a group's members at `t`, one after the other.
+fn start(agents: &Agents<'_>, group: &Group, t: f64) -> Vec<Interval> {
+    let mut start = Vec::new();
+    for &member in &group.members {
+        let first = start.len();
+        start.resize(first + agents.agents[member].states.len(), 0.0);
+        agents.states_at(member, t, &mut start[first..]);
+    }
+    start.into_iter().map(Interval::point).collect()
 }
 
 /// A quarter wider on either side.

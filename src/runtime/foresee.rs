@@ -58,8 +58,8 @@ impl Engine<'_, '_> {
             }
             let (a, b) = (cold.bounds(a), cold.bounds(b));
             let is_apart = |near: &Near| {
-                let gap = a[near.own].sub(b[near.other]);
-                gap.mig() > near.within * (1.0 + 1e-12)
+                near.states()
+                    .is_some_and(|[own, other]| a[own].sub(b[other]).mig() > near.within * (1.0 + 1e-12))
             };
             if near.iter().any(is_apart) {
                 self.certified(index, until);

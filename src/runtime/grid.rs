@@ -2,7 +2,10 @@
 //!
 //! Every box lies in all cells that it overlaps, cells being about as wide as boxes are. Two that overlap are found
 //! once, in the cell of the lower corner of what they have in common. Cells share buckets by their lowest bits; boxes that
-//! change afterwards are entered beside these. A box too large for the cells is compared with every other.
+//! change afterwards are entered beside these. A box too large for the cells is compared with those that overlap it in the
+//! dimension in which these are fewest.
+
+use std::cell::OnceCell;
 
 use rustc_hash::FxHashMap;
 
@@ -32,8 +35,50 @@ pub struct Grid {
     starts: Vec<u32>,
     /// Where those of boxes that changed lie now.
     moved: FxHashMap<Cell, Vec<u32>>,
-    /// Boxes that are too large.
+    /// Boxes that are too large, rising.
     large: Vec<u32>,
+    /// Of boxes that changed those that are too large now.
+    moved_large: Vec<u32>,
+    /// The other boxes, and those that are too large, in order; made when first asked for.
+    orders: OnceCell<[Orders; 2]>,
+}
+
+/// Some boxes in the order of their lower ends, in each dimension; whoever changed since is where it was.
+#[derive(Clone, Debug, Default)]
+struct Orders(Vec<Order>);
+
+/// The same in one dimension.
+#[derive(Clone, Debug, Default)]
+struct Order {
+    /// Lower end, number; rising.
+    boxes: Vec<(f64, u32)>,
+    /// The greatest width.
+    width: f64,
+}
+
+impl Orders {
+    fn new(grid: &Grid, numbers: &[u32]) -> Self {
+        let in_dimension = |dimension: usize| {
+            let bound = |number: u32| grid.get(number)[dimension];
+            let lower = numbers.iter().map(|&number| (bound(number).lo, number));
+            let mut boxes: Vec<(f64, u32)> = lower.filter(|(lo, _)| *lo < f64::INFINITY).collect();
+            boxes.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            let widths = boxes.iter().map(|&(_, number)| bound(number).width());
+            let width = widths.fold(0.0, f64::max);
+            Order { boxes, width }
+        };
+        Self((0..grid.n).map(in_dimension).collect())
+    }
+
+    /// All that may overlap a box: those that do in the dimension in which these are fewest.
+    fn near(&self, bounds: &[Interval]) -> impl Iterator<Item = u32> {
+        let near = bounds.iter().zip(&self.0).map(|(bound, Order { boxes, width })| {
+            let first = boxes.partition_point(|&(lo, _)| lo + width < bound.lo);
+            let last = boxes.partition_point(|&(lo, _)| lo <= bound.hi);
+            &boxes[first.min(last)..last]
+        });
+        near.min_by_key(|near| near.len()).unwrap_or(&[]).iter().map(|&(_, number)| number)
+    }
 }
 
 impl Grid {
@@ -50,7 +95,7 @@ impl Grid {
         }
         let mut entries = Vec::with_capacity(2 * n_boxes);
         for number in 0..n_boxes as u32 {
-            if !grid.for_each_cell(number, &mut |cell| entries.push((cell, number))) {
+            if !grid.for_each_cell(grid.get(number), &mut |cell| entries.push((cell, number))) {
                 grid.large.push(number);
             }
         }
@@ -117,9 +162,11 @@ impl Grid {
                 }
             }
         }
-        for (k, &a) in self.large.iter().enumerate() {
-            for b in 0..self.len() as u32 {
-                if a != b && self.large[..k].binary_search(&b).is_err() && self.overlap(a, b) {
+        for &a in &self.large {
+            let [small, large] = self.orders();
+            let bounds = self.get(a);
+            for b in small.near(bounds).chain(large.near(bounds).filter(|&b| a < b)) {
+                if self.overlap(a, b) {
                     visit(a.min(b), a.max(b));
                 }
             }
@@ -130,37 +177,61 @@ impl Grid {
     pub fn change(&mut self, number: u32, bounds: &[Interval]) {
         self.boxes[number as usize * self.n..][..self.n].copy_from_slice(bounds);
         let mut moved = std::mem::take(&mut self.moved);
-        let is_small = self.for_each_cell(number, &mut |cell| {
+        let is_small = self.for_each_cell(bounds, &mut |cell| {
             let moved = moved.entry(cell).or_default();
             if !moved.contains(&number) {
                 moved.push(number);
             }
         });
         self.moved = moved;
-        if !is_small && !self.large.contains(&number) {
-            self.large.push(number);
+        if !is_small && !self.moved_large.contains(&number) {
+            self.moved_large.push(number);
         }
     }
 
     /// All other boxes that overlap one, rising.
     pub fn around(&self, number: u32) -> Vec<u32> {
-        let mut found = self.large.clone();
-        let is_small = self.for_each_cell(number, &mut |cell| {
-            found.extend(self.here(cell).iter().filter(|entry| entry.0 == cell).map(|entry| entry.1));
-            found.extend(self.moved.get(&cell).into_iter().flatten());
-        });
-        if !is_small {
-            found = (0..self.len() as u32).collect();
-        }
-        found.sort_unstable();
-        found.dedup();
-        found.retain(|&other| other != number && self.overlap(number, other));
+        let mut found = self.touching(self.get(number));
+        found.retain(|&other| other != number);
         found
     }
 
+    /// All boxes that overlap one that need not be among them, rising.
+    pub fn touching(&self, bounds: &[Interval]) -> Vec<u32> {
+        let overlaps = |&other: &u32| overlap(bounds, self.get(other));
+        let mut found: Vec<u32> = self.moved_large.iter().copied().filter(overlaps).collect();
+        if !self.large.is_empty() {
+            found.extend(self.orders()[1].near(bounds).filter(overlaps));
+        }
+        let is_small = self.for_each_cell(bounds, &mut |cell| {
+            let here = self.here(cell).iter().filter(|entry| entry.0 == cell).map(|entry| entry.1);
+            found.extend(here.filter(overlaps));
+            found.extend(self.moved.get(&cell).into_iter().flatten().copied().filter(overlaps));
+        });
+        if !is_small {
+            found.extend(self.orders()[0].near(bounds).filter(overlaps));
+            found.extend(self.moved.values().flatten().copied().filter(overlaps));
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    fn orders(&self) -> &[Orders; 2] {
+        self.orders.get_or_init(|| {
+            let is_small = |number: &u32| self.large.binary_search(number).is_err();
+            let small: Vec<u32> = (0..self.len() as u32).filter(is_small).collect();
+            [Orders::new(self, &small), Orders::new(self, &self.large)]
+        })
+    }
+
+    /// How wide cells are in one dimension; as wide as a box if that has none.
+    pub fn cell_width(&self, dimension: usize) -> f64 {
+        self.scale.get(dimension).map_or(1.0, |scale| 1.0 / scale)
+    }
+
     fn overlap(&self, a: u32, b: u32) -> bool {
-        // An empty box overlaps nothing, not even one without end.
-        self.get(a).iter().zip(self.get(b)).all(|(a, b)| a.lo.max(b.lo) <= a.hi.min(b.hi))
+        overlap(self.get(a), self.get(b))
     }
 
     /// The cell of the lower corner of what two boxes that overlap have in common.
@@ -177,8 +248,7 @@ impl Grid {
 
     /// Calls `visit` for every cell that a box overlaps, once; false, and it does not, if there are too many. A box of nobody
     /// overlaps none.
-    fn for_each_cell(&self, number: u32, visit: &mut dyn FnMut(Cell)) -> bool {
-        let bounds = self.get(number);
+    fn for_each_cell(&self, bounds: &[Interval], visit: &mut dyn FnMut(Cell)) -> bool {
         let dimensions = self.n.min(DIMENSIONS);
         let (mut first, mut last) = ([0; DIMENSIONS], [0; DIMENSIONS]);
         for dimension in 0..dimensions {
@@ -206,6 +276,11 @@ impl Grid {
     }
 }
 
+/// An empty box overlaps nothing, not even one without end.
+fn overlap(a: &[Interval], b: &[Interval]) -> bool {
+    a.iter().zip(b).all(|(a, b)| a.lo.max(b.lo) <= a.hi.min(b.hi))
+}
+
 /// A cell's number with one more dimension.
 fn join(cell: Cell, place: i64) -> Cell {
     (cell << 21) | (place.rem_euclid(2 * CELL_NUMBERS) as u64)
@@ -225,7 +300,7 @@ mod tests {
         }
     }
 
-    fn overlap(a: &[Interval], b: &[Interval]) -> bool {
+    fn meet(a: &[Interval], b: &[Interval]) -> bool {
         let is_empty = |bounds: &[Interval]| bounds.iter().any(|bound| bound.lo > bound.hi);
         !is_empty(a) && !is_empty(b) && a.iter().zip(b).all(|(a, b)| a.lo <= b.hi && b.lo <= a.hi)
     }
@@ -256,7 +331,7 @@ mod tests {
             found.sort_unstable();
             let mut expected = Vec::new();
             for a in 0..300 {
-                expected.extend((a + 1..300).filter(|&b| overlap(grid.get(a), grid.get(b))).map(|b| (a, b)));
+                expected.extend((a + 1..300).filter(|&b| meet(grid.get(a), grid.get(b))).map(|b| (a, b)));
             }
             assert!(!expected.is_empty());
             assert_eq!(found, expected, "{dimensions} dimensions");
@@ -274,7 +349,7 @@ mod tests {
                 grid.change(number, &bounds);
                 for asked in [number, (die() * 200.0) as u32] {
                     let expected: Vec<u32> =
-                        (0..200).filter(|&b| b != asked && overlap(grid.get(asked), grid.get(b))).collect();
+                        (0..200).filter(|&b| b != asked && meet(grid.get(asked), grid.get(b))).collect();
                     assert_eq!(grid.around(asked), expected, "{dimensions} dimensions, round {round}");
                 }
             }

@@ -182,7 +182,7 @@ impl<'p> Guards<'p> {
     pub fn new(agents: &Agents<'p>, listing: Listing, guards_max: usize) -> Result<Self, TooManyGuards> {
         let definitions = definitions(agents, listing);
         let whole = || definitions.iter().filter(|definition| definition.near.is_empty());
-        let needed = whole().map(|definition| size(agents, definition)).sum();
+        let needed = whole().map(|definition| definition.size(agents)).sum();
         if needed > guards_max as u128 {
             return Err(TooManyGuards { needed });
         }
@@ -354,8 +354,9 @@ impl<'p> Guards<'p> {
             for index in self.atoms_of(instance) {
                 let left_out = self.leaves_out(agents, index);
                 if left_out != self.atoms[index].left_out {
-                    let version = self.atoms[index].version + 1;
-                    self.atoms[index] = AtomState { version, left_out, ..AtomState::new(instance) };
+                    let AtomState { version, candidate, .. } = self.atoms[index];
+                    let new = AtomState { candidate, left_out, ..AtomState::new(instance) };
+                    self.atoms[index] = AtomState { version: version + 1, ..new };
                     if !left_out {
                         read.push(index);
                     }
@@ -484,12 +485,13 @@ impl<'p> Guards<'p> {
         (atom, shapes[atom].binders.iter().rev().map(agent).collect())
     }
 
-    /// The ranges out of which a comparison cannot change, if there are any: it is the whole condition of a pair, and false.
+    /// The ranges out of which a comparison cannot change, if there are any of states: it is the only one of a pair, and false.
     pub fn far_where_apart(&self, index: usize) -> Option<&'p [Near]> {
         let state = &self.atoms[index];
         let definition = self.definition(state.instance);
         let is_whole = definition.comparisons.len() == 1 && !state.truth;
-        (is_whole && !definition.near.is_empty()).then_some(definition.near)
+        let is_of_states = |near: &Near| near.states().is_some();
+        (is_whole && definition.near.iter().any(is_of_states)).then_some(definition.near)
     }
 
     /// Whether nobody reads the truth of an atom instance: `other` leaves out an agent that it binds, nobody has its seat, or a
@@ -563,20 +565,6 @@ pub fn allowed(quantified: &Quantified, roots: &[usize], agent: usize) -> bool {
 /// Whether an agent is in a mode, or inside it.
 pub fn inside(agents: &Agents<'_>, agent: usize, mode: usize) -> bool {
     agents.mode(agent).active.contains(&mode)
-}
-
-/// How many entries the instances of a definition take: themselves and their atoms.
-fn size(agents: &Agents<'_>, definition: &Definition<'_>) -> u128 {
-    let n = agents.of_type[definition.ty].len() as u128;
-    let each = 1 + definition.n_atoms as u128;
-    match definition.origin {
-        Origin::Pair(pair) => {
-            let other = agents.of_type[definition.frame.slots[1].ty()].len() as u128;
-            let pairs = n * other;
-            each * if pair.symmetric { pairs / 2 } else { pairs }
-        }
-        Origin::Transition(_) | Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => each * n,
-    }
 }
 
 /// Calls `visit` with the agents of every instance of a definition, in order: every agent of the type; every ordered

@@ -7,7 +7,7 @@
 //! Of an interaction no agent has such a state. There the hazard is constant between writes, and a time is drawn: whenever the hazard
 //! changes, by its guard or by what it reads.
 
-use crate::codegen::program::{Distribution, Target, TransitionSystem, Trigger};
+use crate::codegen::program::{Distribution, Entry, TransitionSystem, Trigger};
 use crate::math::draw::Key;
 use crate::runtime::act::{Effect, Write, Written};
 use crate::runtime::arm::Rule;
@@ -38,7 +38,7 @@ impl Engine<'_, '_> {
             return;
         }
         let value = self.draw((agent, stream), Distribution::Exponential, &[1.0]);
-        let target = Target::State(self.agents.layout(agent).hazard(hazard));
+        let target = Entry::State(self.agents.layout(agent).hazard(hazard));
         effect.writes.push(Write { agent, target, value, span: transition.span });
     }
 

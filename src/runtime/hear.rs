@@ -12,6 +12,7 @@ use smallvec::SmallVec;
 use crate::codegen::program::{Sender, Trigger};
 use crate::runtime::asked::Question;
 use crate::runtime::engine::Engine;
+use crate::runtime::guards::Origin;
 use crate::runtime::instant::{By, Candidate};
 use crate::runtime::mail::Message;
 use crate::runtime::population::Slots;
@@ -139,8 +140,16 @@ impl Engine<'_, '_> {
             return Some(slots);
         };
         let own = self.guards.roots(instance);
-        let question = Question { guard, frame: &transition.frame, own: &own };
+        let question = Question { guard, frame: &transition.frame, own: &own, followed: self.gate(instance) };
         self.ask(&question, slots, &transition.witnesses)
+    }
+
+    /// The instance that follows the guard of a `rate`.
+    fn gate(&self, instance: u32) -> Option<u32> {
+        let state = &self.guards.instances[instance as usize];
+        let gate = state.definition as usize + 1;
+        let is_gate = matches!(self.guards.definitions.get(gate)?.origin, Origin::Gate(_));
+        is_gate.then(|| self.guards.instance_of(gate, state.roots[0] as usize)).flatten()
     }
 
     /// Notes that an `on` has fired by the message at its turn.

@@ -45,29 +45,36 @@ impl<'p> Engine<'p, '_> {
     }
 
     fn whom_by_numbers(&mut self, agent: usize, updates: &[LinkUpdate]) -> usize {
-        for LinkUpdate { frame, case, target, .. } in updates {
+        for update in updates {
+            let LinkUpdate { frame, case, target, .. } = update;
             let mut slots = self.agents.slots(frame, &[agent]);
             if !truth::test(&self.agents, &mut self.present, case, frame, &slots, &[agent]) {
                 continue;
             }
-            let Whither::Nearest { range, filter, key } = target else {
+            let Whither::Nearest { range, filter, key, .. } = target else {
                 return if let Whither::Slot(slot) = target { slots[*slot] } else { ABSENT };
             };
-            let mut best = (f64::INFINITY, ABSENT);
-            for other in self.agents.of_type[range.ty].clone() {
-                if range.other && other == agent {
-                    continue;
-                }
-                slots[range.slot] = other;
-                self.agents.follow_links(frame, &mut slots);
-                if truth::test(&self.agents, &mut self.present, filter, frame, &slots, &[agent]) {
-                    let key = truth::value(&self.agents, &mut self.present, *key, frame, &slots, &[agent]);
-                    if key < best.0 || best.1 == ABSENT && !key.is_nan() {
-                        best = (key, other);
+            for tries in 0.. {
+                let (among, beyond) = self.among(agent, update, tries);
+                let mut best = (f64::INFINITY, ABSENT);
+                for other in among {
+                    if range.other && other == agent {
+                        continue;
+                    }
+                    slots[range.slot] = other;
+                    self.agents.follow_links(frame, &mut slots);
+                    if truth::test(&self.agents, &mut self.present, filter, frame, &slots, &[agent]) {
+                        let key =
+                            truth::value(&self.agents, &mut self.present, *key, frame, &slots, &[agent]);
+                        if key < best.0 || best.1 == ABSENT && !key.is_nan() {
+                            best = (key, other);
+                        }
                     }
                 }
+                if best.0 < beyond || beyond == f64::INFINITY {
+                    return best.1;
+                }
             }
-            return best.1;
         }
         ABSENT
     }
@@ -78,7 +85,7 @@ impl<'p> Engine<'p, '_> {
         let mut all = Vec::new();
         let mut concerned = concerned.to_vec();
         loop {
-            let changes = self.strayed(&concerned);
+            let changes = self.strayed(&concerned)?;
             if changes.is_empty() {
                 all.sort_unstable();
                 all.dedup();
@@ -109,7 +116,7 @@ impl<'p> Engine<'p, '_> {
     }
 
     /// The links among some guard instances that do not lead where they should, with whom they should lead to.
-    fn strayed(&mut self, concerned: &[u32]) -> Vec<(usize, usize, usize)> {
+    fn strayed(&mut self, concerned: &[u32]) -> Result<Vec<(usize, usize, usize)>, Failure> {
         let mut links: Vec<(usize, usize, usize)> = Vec::new();
         for &instance in concerned {
             let state = &self.guards.instances[instance as usize];
@@ -122,16 +129,16 @@ impl<'p> Engine<'p, '_> {
         links.dedup();
         let mut strayed = Vec::new();
         for (_, agent, link) in links {
-            let target = self.whom(agent, link);
+            let target = self.whom(agent, link)?;
             if target != self.agents.linked(agent, link) {
                 strayed.push((agent, link, target));
             }
         }
-        strayed
+        Ok(strayed)
     }
 
     /// Whom a link is to lead to, by the truths of its comparisons: the first case that holds says it.
-    fn whom(&mut self, agent: usize, link: usize) -> usize {
+    fn whom(&mut self, agent: usize, link: usize) -> Result<usize, Failure> {
         for instance in self.guards.of_link(agent, link) {
             let Origin::Link(update) = self.guards.definition(instance).origin else { continue };
             let Condition::And(terms) = &update.stale.condition else { continue };
@@ -140,50 +147,67 @@ impl<'p> Engine<'p, '_> {
                 continue;
             }
             return match &update.target {
-                Whither::Nobody => ABSENT,
-                Whither::Slot(slot) => slots[*slot],
+                Whither::Nobody => Ok(ABSENT),
+                Whither::Slot(slot) => Ok(slots[*slot]),
                 Whither::Nearest { .. } => self.nearest(instance, update, &terms[1]),
             };
         }
-        self.agents.linked(agent, link)
+        Ok(self.agents.linked(agent, link))
     }
 
     /// Who is nearest, for a condition of the shape that [`Whither::Nearest`] says.
-    fn nearest(&mut self, instance: u32, update: &'p LinkUpdate, strays: &Condition) -> usize {
+    fn nearest(
+        &mut self,
+        instance: u32,
+        update: &'p LinkUpdate,
+        strays: &Condition,
+    ) -> Result<usize, Failure> {
         let agent = self.guards.instances[instance as usize].roots[0] as usize;
         let current = self.agents.linked(agent, update.link);
         let (Whither::Nearest { key, .. }, Condition::Or(terms)) = (&update.target, strays) else {
-            return current;
+            return Ok(current);
         };
-        let [Condition::Exists(better), Condition::And(lost)] = &terms[..] else { return current };
-        let Condition::And(parts) = &*better.body else { return current };
-        let [filter, Condition::Or(nearer)] = &parts[..] else { return current };
+        let [Condition::Exists(better), Condition::And(lost)] = &terms[..] else { return Ok(current) };
+        let Condition::And(parts) = &*better.body else { return Ok(current) };
+        let [filter, Condition::Or(nearer)] = &parts[..] else { return Ok(current) };
         let mut slots = self.guards.slots(&self.agents, instance);
         let stays = current != ABSENT && !self.truths().part(instance, &lost[1], &mut slots.clone());
-        let mut candidates: SmallVec<[usize; 4]> = SmallVec::new();
-        for &other in &self.agents.of_type[better.ty] {
-            if other == current || !allowed(better, &[agent], other) {
-                continue;
+        for tries in 0.. {
+            let known = self.guards.candidates_at(instance, better.slot);
+            let among: Vec<usize> = match known {
+                Some(known) => known.iter().map(|candidate| candidate.agent as usize).collect(),
+                None => self.agents.of_type[better.ty].clone(),
+            };
+            let mut candidates: SmallVec<[usize; 4]> = SmallVec::new();
+            for other in among {
+                if other == current || !allowed(better, &[agent], other) {
+                    continue;
+                }
+                slots[better.slot] = other;
+                self.agents.follow_links(&update.frame, &mut slots);
+                let truths = self.truths();
+                if truths.part(instance, filter, &mut slots)
+                    && (!stays || truths.part(instance, &nearer[1], &mut slots))
+                {
+                    candidates.push(other);
+                }
             }
-            slots[better.slot] = other;
-            self.agents.follow_links(&update.frame, &mut slots);
-            let truths = self.truths();
-            if truths.part(instance, filter, &mut slots)
-                && (!stays || truths.part(instance, &nearer[1], &mut slots))
-            {
-                candidates.push(other);
+            let mut best = (f64::INFINITY, if stays { current } else { ABSENT });
+            let mut is_first = true;
+            for other in candidates {
+                slots[better.slot] = other;
+                self.agents.follow_links(&update.frame, &mut slots);
+                let key =
+                    truth::value(&self.agents, &mut self.present, *key, &update.frame, &slots, &[agent]);
+                if key < best.0 || is_first && !key.is_nan() {
+                    (best, is_first) = ((key, other), false);
+                }
+            }
+            let least = (!is_first).then_some(best.0);
+            if stays || !self.look_farther(instance, least, tries)? {
+                return Ok(best.1);
             }
         }
-        let mut best = (f64::INFINITY, if stays { current } else { ABSENT });
-        let mut is_first = true;
-        for other in candidates {
-            slots[better.slot] = other;
-            self.agents.follow_links(&update.frame, &mut slots);
-            let key = truth::value(&self.agents, &mut self.present, *key, &update.frame, &slots, &[agent]);
-            if key < best.0 || is_first && !key.is_nan() {
-                (best, is_first) = ((key, other), false);
-            }
-        }
-        best.1
+        Ok(current)
     }
 }

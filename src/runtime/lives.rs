@@ -145,6 +145,7 @@ impl Engine<'_, '_> {
                 born.push(self.bear(&conceived)?);
             }
             self.present.forget();
+            self.place_anew(written.before.keys().chain(&written.born).chain(&born).copied());
             self.set_links(&born);
             let entries: Vec<(usize, &[usize])> =
                 born.iter().map(|&agent| (agent, self.agents.mode(agent).active.as_slice())).collect();
@@ -342,7 +343,6 @@ impl Engine<'_, '_> {
         dead.retain(|&agent| !self.agents.is_alive(agent));
         self.agents.close_ranks();
         self.guards.thin();
-        self.neighbours.unlist(&dead);
         self.recorder.dismiss(&dead);
         self.hot.retain(|agent| !dead.contains(agent));
         written.before.retain(|agent, _| !dead.contains(agent));

@@ -5,6 +5,8 @@
 //! Science 410, 2009.) Between events a margin is a function of the agents' dense output; its bounds over a stretch
 //! come from bounds of g, g' and g'' there.
 
+use smallvec::SmallVec;
+
 use crate::codegen::program::{Atom, Condition, Guard, Quantified, Relation};
 use crate::math::Interval;
 use crate::runtime::detect::{AtomCurve, CurveRows};
@@ -86,6 +88,8 @@ pub struct Margins<'a, 'p> {
     pub instance: u32,
     /// The condition.
     pub guard: &'p Guard,
+    /// If it is a quantifier: the only agent that this is to bind; none: all of its range.
+    pub only: Option<usize>,
 }
 
 impl<'p> Margins<'_, 'p> {
@@ -98,6 +102,32 @@ impl<'p> Margins<'_, 'p> {
         let guard = self.guard;
         let slots = self.slots();
         self.spot(&guard.condition, &slots, when)
+    }
+
+    /// The quantifier that the condition is, if its body reads nobody but whom it binds and whom links lead to from there.
+    pub fn outermost(&self) -> Option<&'p Quantified> {
+        let guard = self.guard;
+        let (Condition::Forall(quantified) | Condition::Exists(quantified)) = &guard.condition else {
+            return None;
+        };
+        let reads_folds = !self.guards.definition(self.instance).folds.is_empty();
+        (!reads_folds && is_plain(&quantified.body)).then_some(quantified)
+    }
+
+    /// Up to when the ways of the only agent, and of those to whom links lead from there, go on as they are known at `t`.
+    pub fn known_from(&self, t: f64) -> Option<f64> {
+        let quantified = self.outermost()?;
+        let slots = self.bindings(quantified, &self.slots()).pop()?;
+        let read = slots.into_iter().filter(|&agent| agent != ABSENT).map(|agent| &self.agents.agents[agent]);
+        let ways = read.filter(|agent| !agent.states.is_empty()).map(|agent| &agent.segment);
+        let mut until = f64::INFINITY;
+        for way in ways {
+            if way.start > t {
+                return None;
+            }
+            until = until.min(way.end);
+        }
+        until.is_finite().then_some(until)
     }
 
     /// The margin over [s, e].
@@ -181,14 +211,17 @@ impl<'p> Margins<'_, 'p> {
     fn bindings(&self, quantified: &Quantified, slots: &Slots) -> Vec<Slots> {
         let roots = self.guards.roots(self.instance);
         let frame = self.guards.definition(self.instance).frame;
-        let range = self.agents.of_type[quantified.ty].iter().copied();
         let bind = |agent: usize| {
             let mut bound = slots.clone();
             bound[quantified.slot] = agent;
             self.agents.follow_links(frame, &mut bound);
             bound
         };
-        range.filter(|&agent| allowed(quantified, &roots, agent)).map(bind).collect()
+        let range: SmallVec<[usize; 1]> = match self.only {
+            Some(only) => SmallVec::from_slice(&[only]),
+            None => self.agents.of_type[quantified.ty].iter().copied().collect(),
+        };
+        range.into_iter().filter(|&agent| allowed(quantified, &roots, agent)).map(bind).collect()
     }
 
     fn comparison(&mut self, number: usize, slots: &Slots, when: When) -> Spot {
@@ -275,6 +308,15 @@ impl<'p> Margins<'_, 'p> {
 
 fn negative(x: Interval) -> Interval {
     Interval { lo: -x.hi, hi: -x.lo }
+}
+
+/// Whether a condition has no quantifier.
+fn is_plain(condition: &Condition) -> bool {
+    match condition {
+        Condition::Constant(_) | Condition::Discrete(_) | Condition::Atom(_) => true,
+        Condition::And(all) | Condition::Or(all) => all.iter().all(is_plain),
+        Condition::Exists(_) | Condition::Forall(_) | Condition::Rising(..) => false,
+    }
 }
 
 /// The margin of what is no comparison.

@@ -88,6 +88,7 @@ impl Engine<'_, '_> {
     pub fn begin(&mut self) -> Result<(), Failure> {
         self.present.go(0.0);
         let all = self.agents.living();
+        self.place_all();
         self.set_links(&all);
         self.set_locks(all.iter().copied());
         let mut written = Written::default();

@@ -4,8 +4,9 @@
 //! for its own jumps. Its extremes are found by branch and bound: pieces that cannot hold a better value are left out, pieces on
 //! which the rate keeps its sign have it at an end. So nothing is sampled, and nothing of the run is changed.
 
-use crate::codegen::program::ClaimSystem;
+use crate::codegen::program::{ClaimSystem, Condition, Quantified};
 use crate::runtime::engine::Engine;
+use crate::runtime::lookout::Lookout;
 use crate::runtime::margins::{Margins, When};
 use crate::runtime::signal::{Origin, Piece};
 use crate::runtime::solve::time_resolution;
@@ -53,9 +54,17 @@ impl<'p> Engine<'p, '_> {
         (s, e): (f64, f64),
     ) {
         match watched {
-            Watched::Extreme { extreme, condition, window, found } => {
+            Watched::Extreme { extreme, condition, window, found, lookout } => {
                 let (s, e) = (s.max(window[0]), e.min(window[1]));
                 let mut margins = self.margins(conditions[*condition]);
+                let decides = |quantified: &&Quantified| {
+                    let has_members = !margins.agents.of_type[quantified.ty].is_empty();
+                    has_members && *extreme == picked(&margins.guard.condition)
+                };
+                let outermost = margins.outermost().filter(decides);
+                if let Some(quantified) = outermost {
+                    return watch_members(&mut margins, quantified, (*extreme, found), lookout, when, (s, e));
+                }
                 match when {
                     When::Now if s <= e => consider(&mut margins, *extreme, s, When::Now, found),
                     When::Along(_) if s <= e => search(&mut margins, *extreme, (s, e), found),
@@ -101,6 +110,7 @@ impl<'p> Engine<'p, '_> {
             rows: &mut self.curves,
             instance,
             guard: &claim.violation,
+            only: None,
         }
     }
 
@@ -167,6 +177,64 @@ impl<'p> Engine<'p, '_> {
             self.attain(pair, y, When::Along(y), y, (least, found));
         }
     }
+}
+
+/// Which extreme over time a quantifier has over its members.
+fn picked(condition: &Condition) -> Extreme {
+    if matches!(condition, Condition::Exists(_)) { Extreme::Greatest } else { Extreme::Least }
+}
+
+/// Watches a quantifier member by member, each from when on it may come to decide.
+fn watch_members(
+    margins: &mut Margins<'_, '_>,
+    quantified: &Quantified,
+    (extreme, found): (Extreme, &mut Option<Found>),
+    lookout: &mut Lookout,
+    when: When,
+    (s, e): (f64, f64),
+) {
+    if !std::mem::replace(&mut lookout.has_begun, true) {
+        margins.agents.of_type[quantified.ty].iter().for_each(|&member| lookout.doubt(member));
+    }
+    let agents = margins.agents;
+    let is_member = |place: usize| agents.is_alive(place) && agents.agents[place].ty == quantified.ty;
+    let is_watched = s <= e;
+    if when == When::Now {
+        for member in lookout.take_doubted() {
+            if is_watched && is_member(member) {
+                margins.only = Some(member);
+                consider(margins, extreme, s, When::Now, found);
+            }
+        }
+        return;
+    }
+    if !is_watched {
+        return;
+    }
+    // Of a point of time all are looked at that have not been.
+    let end = if s < e { e } else { e.next_up() };
+    let mut looked_at = Vec::new();
+    while let Some(member) = lookout.next_before(end) {
+        if !is_member(member) {
+            continue;
+        }
+        margins.only = Some(member);
+        let known = margins.known_from(s).filter(|&known| known > e);
+        let best = found.as_ref().map_or(f64::INFINITY, |found| extreme.sign() * found.value);
+        let stays = |known: &f64| {
+            let value = margins.over(s, *known).value;
+            let least = if extreme == Extreme::Least { value.lo } else { -value.hi };
+            least > best
+        };
+        match known.filter(stays) {
+            Some(known) => looked_at.push((member, known)),
+            None => {
+                search(margins, extreme, (s, e), found);
+                looked_at.push((member, e));
+            }
+        }
+    }
+    looked_at.into_iter().for_each(|(member, until)| lookout.look_again(member, until));
 }
 
 /// Whether a value is less than the least so far, by more than rounding.

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use smallvec::SmallVec;
 
-use crate::codegen::program::Near;
+use crate::codegen::program::{Entry, Near};
 use crate::math::Interval;
 use crate::runtime::act::Written;
 use crate::runtime::arm::Rule;
@@ -16,7 +16,7 @@ use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::grid::Grid;
 use crate::runtime::guards::Origin;
-use crate::runtime::neighbours::{Field, Listed, NOWHERE};
+use crate::runtime::neighbours::{Field, Listed, NOWHERE, Scopes, Way};
 use crate::runtime::population::ABSENT;
 
 /// What is new in the list of a field.
@@ -53,9 +53,12 @@ impl<'p> Engine<'p, '_> {
     pub fn make_fields(&mut self) {
         let mut fields = Vec::new();
         for (number, definition) in self.guards.definitions.iter().enumerate() {
+            let is_link = matches!(definition.origin, Origin::Link(_));
             let mut add = |quantifier: Option<usize>, ty: usize, near: &[Near], symmetric, with_self| {
                 let types = [definition.ty, ty];
-                let alike = types[0] == types[1] && near.iter().all(|near| near.own == near.other);
+                let is_same = |near: &Near| near.own == near.other;
+                let alike = types[0] == types[1] && near.iter().all(is_same) && !is_link;
+                let scopes = is_link.then(Scopes::default);
                 let (seats, grid, listed) = ([0; 2], Grid::default(), Vec::new());
                 let definition = number;
                 fields.push(Field {
@@ -68,6 +71,7 @@ impl<'p> Engine<'p, '_> {
                     seats,
                     grid,
                     listed,
+                    scopes,
                 });
             };
             match definition.origin {
@@ -91,34 +95,34 @@ impl<'p> Engine<'p, '_> {
     /// Lists the pairs that can come within range from the present instant up to `until`; returns what is new.
     pub fn list_pairs(&mut self, until: f64) -> Result<Vec<New>, Failure> {
         let mut fields = std::mem::take(&mut self.neighbours.fields);
+        self.neighbours.until = until;
+        self.neighbours.ways.clear();
         let mut new = Vec::new();
         let mut done = Ok(());
         for field in &mut fields {
-            done = self.list_field(field, until, Far::LetGo, &mut new);
+            done = self.list_field(field, Far::LetGo, &mut new);
             if done.is_err() {
                 break;
             }
         }
-        (self.neighbours.until, self.neighbours.fields) = (until, fields);
+        self.neighbours.fields = fields;
         self.guards.free_retired();
         done.map(|()| new)
     }
 
-    fn list_field(
-        &mut self,
-        field: &mut Field,
-        until: f64,
-        far: Far,
-        new: &mut Vec<New>,
-    ) -> Result<(), Failure> {
+    fn list_field(&mut self, field: &mut Field, far: Far, new: &mut Vec<New>) -> Result<(), Failure> {
         let near = self.ranges_of(field);
         let mut boxes = Vec::new();
         field.seats = field.seats_of(&self.agents);
+        if let Some(scopes) = &mut field.scopes {
+            scopes.changed.clear();
+            (scopes.ways, scopes.rooms) = (0.0, 0.0);
+        }
         for side in field.sides() {
             for seat in 0..field.seats[side] {
                 match self.agents.seats[field.types[side]][seat] {
                     ABSENT => boxes.extend(near.iter().map(|_| NOWHERE)),
-                    agent => boxes.extend(self.reach(agent, near, side, until)),
+                    agent => boxes.extend(self.reach(field, agent, side)),
                 }
             }
         }
@@ -128,7 +132,9 @@ impl<'p> Engine<'p, '_> {
         wanted.extend(field.selves(&self.agents).iter().map(|&agent| [agent as u32; 2]));
         wanted.sort_unstable();
         let mut before = std::mem::take(&mut field.listed);
+        before.retain(|listed| self.is_listed(field, listed));
         before.sort_unstable();
+        before.dedup();
         let mut before = before.into_iter().peekable();
         for agents in wanted {
             while let Some(old) = before.next_if(|old| old.agents < agents) {
@@ -147,9 +153,21 @@ impl<'p> Engine<'p, '_> {
     }
 
     /// How near the agents of a field's pairs are where its condition is not settled.
-    fn ranges_of(&self, field: &Field) -> &'p [Near] {
+    pub fn ranges_of(&self, field: &Field) -> &'p [Near] {
         let definition = &self.guards.definitions[field.definition];
         field.quantifier.map_or(definition.near, |number| definition.nearby[number].near)
+    }
+
+    /// Whether nobody of a listed pair has died.
+    fn is_listed(&self, field: &Field, &Listed { agents, instance }: &Listed) -> bool {
+        let state = &self.guards.instances[instance as usize];
+        match field.quantifier {
+            Some(number) => {
+                let candidate = self.guards.candidate(&self.agents, instance, number, agents[1] as usize);
+                state.listed && state.roots[0] == agents[0] && candidate.is_some()
+            }
+            None => state.listed && state.roots == agents,
+        }
     }
 
     fn see_off(&mut self, old: Listed, far: Far, field: &mut Field) {
@@ -171,7 +189,7 @@ impl<'p> Engine<'p, '_> {
     }
 
     /// Lists a pair of a field.
-    fn enter(&mut self, field: &mut Field, agents: [u32; 2]) -> Result<New, Failure> {
+    pub fn enter(&mut self, field: &mut Field, agents: [u32; 2]) -> Result<New, Failure> {
         let Some(number) = field.quantifier else {
             let instance = self.new_pair(field.definition, agents)?;
             field.listed.push(Listed { agents, instance });
@@ -200,28 +218,44 @@ impl<'p> Engine<'p, '_> {
         if needed > limit as u128 { Err(Reason::GuardLimit { needed, limit }.into()) } else { Ok(()) }
     }
 
-    /// Where an agent can get to up to `until`, in the states that are compared of it, with half of the range around.
-    fn reach(&mut self, agent: usize, near: &[Near], side: usize, until: f64) -> SmallVec<[Interval; 4]> {
-        let mut states = SmallVec::new();
-        let span = (self.present.time, until);
-        let (agents, groups) = (&self.agents, &self.groups.groups);
-        self.reaches.states(agents, groups, &mut self.enclosures, agent, span, &mut states);
-        let around = |near: &Near| {
-            let bound = states[if side == 0 { near.own } else { near.other }];
-            let half = 0.5 * near.within * (1.0 + 1e-12);
-            Interval { lo: bound.lo - half, hi: bound.hi + half }
+    /// Where an agent can get to before the lists are made anew, in what is compared of it, with half of the range around; of a
+    /// link the owner with all of it.
+    pub fn reach(&mut self, field: &mut Field, agent: usize, side: usize) -> Way {
+        let near = self.ranges_of(field);
+        let rooms: SmallVec<[f64; 4]> = if field.scopes.is_some() {
+            self.rooms(field, agent, side)
+        } else {
+            near.iter().map(|near| 0.5 * near.within * (1.0 + 1e-12)).collect()
         };
-        near.iter().map(around).collect()
+        self.box_of(field, agent, side, &rooms)
+    }
+
+    /// Where an agent can get to before the lists are made anew, in what is compared of it, with so much room around.
+    pub fn box_of(&mut self, field: &Field, agent: usize, side: usize, rooms: &[f64]) -> Way {
+        let near = self.ranges_of(field);
+        let (way, aux) = (self.way(agent), &self.agents.agents[agent].aux);
+        let around = |(near, room): (&Near, &f64)| {
+            let bound = match if side == 0 { near.own } else { near.other } {
+                Entry::State(k) => way[k],
+                Entry::Aux(column) => Interval::point(aux[column]),
+            };
+            Interval { lo: bound.lo - room, hi: bound.hi + room }
+        };
+        near.iter().zip(rooms).map(around).collect()
     }
 
     /// Lists anew, at the present instant, those of some agents that may leave the boxes by which they are listed, and those
     /// who have come to be; returns instances of these, which are armed.
     pub fn relist(&mut self, agents: &[usize], born: &[usize]) -> Result<Vec<u32>, Failure> {
+        if !self.has_fields() {
+            return Ok(Vec::new());
+        }
+        let agents = self.go_other_ways(agents);
         let mut fields = std::mem::take(&mut self.neighbours.fields);
         let mut done = Ok(());
         let mut armed = Vec::new();
         for field in &mut fields {
-            done = self.relist_field(field, agents, born, &mut armed);
+            done = self.relist_field(field, &agents, born, &mut armed);
             if done.is_err() {
                 break;
             }
@@ -249,24 +283,19 @@ impl<'p> Engine<'p, '_> {
         born: &[usize],
         armed: &mut Vec<u32>,
     ) -> Result<(), Failure> {
-        let near = self.ranges_of(field);
         if field.seats != field.seats_of(&self.agents) {
             let mut new = Vec::new();
-            self.list_field(field, self.neighbours.until, Far::Keep, &mut new)?;
+            self.list_field(field, Far::Keep, &mut new)?;
             return new.into_iter().try_for_each(|new| self.introduce(new, born, armed));
         }
         let mut moved = Vec::new();
-        for &agent in agents {
-            for side in field.sides() {
-                let Some(number) = field.number(&self.agents, agent, side) else { continue };
-                let bounds = self.reach(agent, near, side, self.neighbours.until);
-                let known = field.grid.get(number);
-                if bounds.iter().zip(known).any(|(new, old)| new.lo < old.lo || old.hi < new.hi) {
-                    field.grid.change(number, &bounds);
-                    moved.push(number);
-                }
+        for side in field.sides() {
+            let by_link = if side == 0 { self.owners_led_to(field, agents) } else { Vec::new() };
+            for &agent in agents.iter().chain(&by_link) {
+                moved.extend(self.box_anew(field, agent, side));
             }
         }
+        moved.extend(field.scopes.iter_mut().flat_map(|scopes| std::mem::take(&mut scopes.changed)));
         let mut wanted: Vec<[u32; 2]> = Vec::new();
         for &number in &moved {
             for other in field.grid.around(number) {
@@ -285,9 +314,21 @@ impl<'p> Engine<'p, '_> {
         Ok(())
     }
 
+    /// Gives an agent a box anew; its number, if the agent may leave the one that it had.
+    pub fn box_anew(&mut self, field: &mut Field, agent: usize, side: usize) -> Option<u32> {
+        let number = field.number(&self.agents, agent, side)?;
+        let bounds = self.reach(field, agent, side);
+        let known = field.grid.get(number);
+        let leaves = bounds.iter().zip(known).any(|(new, old)| new.lo < old.lo || old.hi < new.hi);
+        leaves.then(|| {
+            field.grid.change(number, &bounds);
+            number
+        })
+    }
+
     /// Arms an instance of a pair that is new in a list, because one of the two is new, or because they have come near; or
     /// settles the comparisons with a new candidate.
-    fn introduce(&mut self, new: New, born: &[usize], armed: &mut Vec<u32>) -> Result<(), Failure> {
+    pub fn introduce(&mut self, new: New, born: &[usize], armed: &mut Vec<u32>) -> Result<(), Failure> {
         let New { instance, candidate } = new;
         if let Some(nominee) = candidate {
             let rule = if born.contains(&nominee.agent) { Rule::Fresh } else { Rule::Rates };
@@ -303,7 +344,7 @@ impl<'p> Engine<'p, '_> {
         self.arm(instance, Rule::Fresh)
     }
 
-    fn has_pair(&self, field: &Field, [first, second]: [u32; 2]) -> bool {
+    pub fn has_pair(&self, field: &Field, [first, second]: [u32; 2]) -> bool {
         if let Some(number) = field.quantifier {
             let instance = self.guards.instance_of(field.definition, first as usize);
             return instance.is_some_and(|instance| {
@@ -332,7 +373,7 @@ impl<'p> Engine<'p, '_> {
             return;
         }
         for index in nominee.atoms {
-            if !self.settle_far(index) {
+            if !self.guards.atoms[index].left_out && !self.settle_far(index) {
                 self.settle(index, rule, &Written::default());
             }
         }

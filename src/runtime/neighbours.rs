@@ -4,7 +4,6 @@
 //! come within it before the list is made anew. Each agent has a box: where it can get to until then, in the states that
 //! are compared, with half of the range around it. Pairs whose boxes do not overlap cannot make the condition true.
 
-use rustc_hash::FxHashSet;
 use smallvec::SmallVec;
 
 use crate::math::Interval;
@@ -13,6 +12,9 @@ use crate::runtime::population::Agents;
 
 /// Where nobody is: it overlaps nothing.
 pub const NOWHERE: Interval = Interval { lo: f64::INFINITY, hi: f64::NEG_INFINITY };
+
+/// Boxes of an agent's states.
+pub type Way = SmallVec<[Interval; 4]>;
 
 /// The pairs of all interactions that have a range.
 #[derive(Default)]
@@ -23,6 +25,8 @@ pub struct Neighbours {
     pub span: f64,
     /// One for each transition of an interaction, and for each quantifier, that has a range.
     pub fields: Vec<Field>,
+    /// Where agents get to before that, by place, as far as anybody has asked.
+    pub ways: Vec<Option<Way>>,
 }
 
 /// The pairs of one transition of an interaction, or of the owners of a guard and those at whom a quantifier of it looks.
@@ -43,8 +47,34 @@ pub struct Field {
     pub grid: Grid,
     /// Whether an agent is paired with itself.
     pub with_self: bool,
-    /// Pairs that have instances, with those; of a quantifier with the instance of the guard. In no order.
+    /// Pairs that have instances, with those; of a quantifier with the instance of the guard. In no order, and with some whose agents
+    /// have died since.
     pub listed: Vec<Listed>,
+    /// Of a link to whoever is nearest: how far that looks.
+    pub scopes: Option<Scopes>,
+}
+
+/// How far those look who have a link to whoever is nearest.
+#[derive(Default)]
+pub struct Scopes {
+    /// By seat: whoever has a lesser key, for all of the time for which the lists hold, is a candidate.
+    pub keys: Vec<f64>,
+    /// Boxes that have changed since their pairs were listed.
+    pub changed: Vec<u32>,
+    /// Sums over all owners, of axes in which a scope is finite: how far they may get, and how far they look.
+    pub ways: f64,
+    /// See `ways`.
+    pub rooms: f64,
+}
+
+impl Scopes {
+    /// The scope of whoever has a seat.
+    pub fn key(&mut self, seat: usize) -> &mut f64 {
+        if self.keys.len() <= seat {
+            self.keys.resize(seat + 1, f64::INFINITY);
+        }
+        &mut self.keys[seat]
+    }
 }
 
 /// A pair with its instance.
@@ -103,9 +133,16 @@ impl Field {
 }
 
 impl Neighbours {
-    /// Forgets the box of an agent that dies; its pairs are listed before [`Neighbours::unlist`].
+    /// Forgets the box of an agent that dies; its pairs are listed until the lists are made anew.
     pub fn forget(&mut self, agents: &Agents<'_>, agent: usize) {
+        if let Some(way) = self.ways.get_mut(agent) {
+            *way = None;
+        }
         for field in &mut self.fields {
+            if let Some(scopes) = field.scopes.as_mut().filter(|_| agents.agents[agent].ty == field.types[0])
+            {
+                *scopes.key(agents.agents[agent].seat) = f64::INFINITY;
+            }
             for side in field.sides() {
                 let number = field.number(agents, agent, side);
                 if let Some(number) = number.filter(|&number| (number as usize) < field.grid.len()) {
@@ -114,15 +151,6 @@ impl Neighbours {
                     field.grid.change(number, &nowhere);
                 }
             }
-        }
-    }
-
-    /// Forgets the pairs of agents that have died.
-    pub fn unlist(&mut self, dead: &FxHashSet<usize>) {
-        for field in &mut self.fields {
-            field
-                .listed
-                .retain(|listed| listed.agents.iter().all(|&agent| !dead.contains(&(agent as usize))));
         }
     }
 }

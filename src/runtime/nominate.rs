@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::runtime::candidates::Candidate;
-use crate::runtime::guards::{AtomState, Guards};
+use crate::runtime::guards::{AtomState, Guards, Origin};
 use crate::runtime::population::Agents;
 
 impl Guards<'_> {
@@ -82,6 +82,11 @@ impl Guards<'_> {
         let candidate =
             Candidate { number: agents.number(agent) as u64, agent: agent as u32, first: first as u32 };
         self.candidates.enter(self.list_of(instance, number), instance, candidate);
+        if let Origin::Link(_) = self.definition(instance).origin {
+            for index in first..first + n {
+                self.atoms[index].left_out = self.leaves_out(agents, index);
+            }
+        }
         self.n_pairs += n as u64;
         first..first + n
     }

@@ -173,14 +173,14 @@ impl Engine<'_, '_> {
         let (ta, xa) = anchor(agents, groups, a);
         let (tb, xb) = anchor(agents, groups, b);
         let mut distant = None;
-        for near in near {
-            let Some(ra) = self.reaches.rate(agents, groups, a, near.own, from) else {
+        for (near, [own, other]) in near.iter().filter_map(|near| Some((near, near.states()?))) {
+            let Some(ra) = self.reaches.rate(agents, groups, a, own, from) else {
                 return Distance::Unknown;
             };
-            let Some(rb) = self.reaches.rate(agents, groups, b, near.other, from) else {
+            let Some(rb) = self.reaches.rate(agents, groups, b, other, from) else {
                 return Distance::Unknown;
             };
-            let (a, b) = (xa[near.own], xb[near.other]);
+            let (a, b) = (xa[own], xb[other]);
             let until = if a > b {
                 out_of_range((a, ta, ra), (b, tb, rb), near.within, self.stepper.accuracy, (from, end))
             } else {

@@ -3,6 +3,7 @@
 use crate::base::Span;
 use crate::codegen::program::{ClaimKind, ClaimSystem, Formula, Program, Property};
 use crate::runtime::guards::{Guards, Origin};
+use crate::runtime::lookout::Lookout;
 use crate::runtime::margins::{Margins, Spot, When};
 use crate::runtime::observe::Verdict;
 use crate::runtime::signal::{Piece, greatest, greatest_ahead, turned, until_ahead};
@@ -65,6 +66,8 @@ pub enum Watched {
         window: [f64; 2],
         /// The extreme so far.
         found: Option<Found>,
+        /// Who may come to decide it, if the condition is a quantifier that has this extreme.
+        lookout: Lookout,
     },
     /// A goal within a window, and a condition before.
     Until {
@@ -198,6 +201,15 @@ impl<'p> Monitors<'p> {
         }
     }
 
+    /// Something that may be read of these agents was written, or they are new.
+    pub fn doubt(&mut self, agents: &[usize]) {
+        for (_, watched) in &mut self.properties {
+            if let Watched::Extreme { lookout, .. } = watched {
+                agents.iter().for_each(|&agent| lookout.doubt(agent));
+            }
+        }
+    }
+
     /// What the properties came to.
     pub fn verdicts(&self) -> Vec<Verdict> {
         self.properties.iter().map(|(property, watched)| verdict(property, watched)).collect()
@@ -227,10 +239,14 @@ fn watched(formula: &Formula) -> Watched {
 /// Operators, outermost first, over a condition.
 fn over(operators: Vec<(Extreme, [f64; 2])>, condition: usize) -> Watched {
     match operators[..] {
-        [] => Watched::Extreme { extreme: Extreme::Least, condition, window: [0.0; 2], found: None },
-        [(extreme, window)] => Watched::Extreme { extreme, condition, window, found: None },
+        [] => extreme(Extreme::Least, condition, [0.0; 2]),
+        [(which, window)] => extreme(which, condition, window),
         [..] => Watched::Nested { operators, inner: Inner::Holds(condition, Trace::default()) },
     }
+}
+
+fn extreme(extreme: Extreme, condition: usize, window: [f64; 2]) -> Watched {
+    Watched::Extreme { extreme, condition, window, found: None, lookout: Lookout::default() }
 }
 
 /// Operators, outermost first, over a condition until another one.

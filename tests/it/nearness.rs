@@ -4,7 +4,7 @@
 use hyc::calculus::evaluate;
 use hyc::calculus::graph::Node;
 use hyc::calculus::system::{
-    Condition, FunctionId, Guard, Layout, Near, Quantified, Relation, System, Trigger,
+    Condition, Entry, FunctionId, Guard, Layout, Near, Quantified, Relation, System, Trigger, Whither,
 };
 
 use crate::harness::Case;
@@ -105,7 +105,7 @@ impl<'s> Asked<'s> {
 
     /// The bounds as text: state, state, width.
     fn bounds(&self) -> Vec<(usize, usize, f64)> {
-        self.near.iter().map(|near| (near.own, near.other, near.within)).collect()
+        self.near.iter().map(|near| (axis(near.own), axis(near.other), near.within)).collect()
     }
 }
 
@@ -179,6 +179,24 @@ impl Point {
     }
 }
 
+impl Point {
+    fn entry(&mut self, side: usize, entry: Entry) -> &mut f64 {
+        match entry {
+            Entry::State(k) => &mut self.states[side][k],
+            Entry::Aux(column) => &mut self.aux[side][column],
+        }
+    }
+
+    /// a.x - b.y
+    fn gap(&mut self, near: &Near) -> f64 {
+        *self.entry(0, near.own) - *self.entry(1, near.other)
+    }
+
+    fn put_apart(&mut self, near: &Near, gap: f64) {
+        *self.entry(1, near.other) = *self.entry(0, near.own) + gap;
+    }
+}
+
 /// Beyond a bound the condition is settled, wherever the agents are; somewhere within all bounds it is not.
 fn sampled(asked: &Asked, text: &str, random: &mut Random) {
     let n_samples = 4000;
@@ -187,8 +205,8 @@ fn sampled(asked: &Asked, text: &str, random: &mut Random) {
             let mut at = Point::random(asked, random);
             let beyond = 1.0 + random.of_any_size(1e-8, 1e4).abs();
             let gap = near.within * beyond * if random.unit() < 0.5 { 1.0 } else { -1.0 };
-            at.states[1][near.other] = at.states[0][near.own] + gap;
-            if (at.states[0][near.own] - at.states[1][near.other]).abs() > near.within {
+            at.put_apart(near, gap);
+            if at.gap(near).abs() > near.within {
                 let holds = asked.holds(&mut |node| at.leaf(node, asked.slot));
                 assert_eq!(holds, asked.far, "{text}: {near:?} at {:?}", at.states);
             }
@@ -216,6 +234,15 @@ fn assert_bounds(found: &[(usize, usize, f64)], expected: &[(usize, usize, f64)]
 }
 
 /// x with x, y with y, at the same distance.
+/// The number of a state.
+#[track_caller]
+fn axis(entry: Entry) -> usize {
+    match entry {
+        Entry::State(k) => k,
+        Entry::Aux(column) => panic!("column {column} is no state"),
+    }
+}
+
 fn xy(within: f64) -> Vec<(usize, usize, f64)> {
     vec![(0, 0, within), (1, 1, within)]
 }
@@ -297,11 +324,103 @@ fn what_bounds_no_difference_has_no_range() {
         "abs(a.x - b.x)/(1 + a.y^2) <= 1",
         "abs(a.lead.x - b.x) <= 1",
         "crossing(a.x - b.x + a.y)",
-        "a.w == b.w",
     ];
     for text in guards {
         let system = interaction(text);
         assert_eq!(Asked::interaction(&system).bounds(), [], "{text}");
+    }
+}
+
+/// Parameters and discrete variables differ by as little as states do.
+#[test]
+fn columns_are_compared_as_states_are() {
+    let w = 3 + 2 + 1;
+    let guards = [
+        ("a.w == b.w", vec![(Entry::Aux(w), Entry::Aux(w), 0.0)]),
+        ("b.w == a.w + 1", vec![(Entry::Aux(w), Entry::Aux(w), 1.0)]),
+        (
+            "a.w == b.w and abs(a.x - b.x) <= 2",
+            vec![(Entry::State(0), Entry::State(0), 2.0), (Entry::Aux(w), Entry::Aux(w), 0.0)],
+        ),
+        ("abs(a.x - b.u) <= 2", vec![(Entry::State(0), Entry::Aux(w + 1), 2.0)]),
+        ("a.w != b.w", vec![]),
+        ("a.w <= b.w", vec![]),
+    ];
+    let mut random = Random(11);
+    for (text, expected) in guards {
+        let system = interaction(text);
+        let asked = Asked::interaction(&system);
+        let found: Vec<_> = asked.near.iter().map(|near| (near.own, near.other, near.within)).collect();
+        let columns = |bounds: &[(Entry, Entry, f64)]| bounds.iter().map(|b| (b.0, b.1)).collect::<Vec<_>>();
+        assert_eq!(columns(&found), columns(&expected), "{text}");
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!(expected.2 <= found.2 && found.2 <= expected.2 * (1.0 + 1e-6), "{text}: {found:?}");
+        }
+        for near in asked.near {
+            for _ in 0..4000 {
+                let mut at = Point::random(&asked, &mut random);
+                let gap = random.of_any_size(near.within.max(1e-6) * 1.000_001, 1e4);
+                at.put_apart(near, gap);
+                if at.gap(near).abs() > near.within {
+                    assert!(!asked.holds(&mut |node| at.leaf(node, asked.slot)), "{text}: {near:?}");
+                }
+            }
+        }
+    }
+}
+
+/// Of whoever is nearest: nobody beyond the bound for a key has a lesser one.
+#[test]
+fn nobody_beyond_its_bound_has_a_lesser_key() {
+    let links = [
+        ("nearest o in other A by (o.x - x)^2 + (o.y - y)^2", 2),
+        ("nearest o in other A by hypot(o.x - x, o.y - y)", 2),
+        ("nearest o in other A by abs(o.x - x) + 2*abs(o.y - y) + 3", 2),
+        ("nearest o in other A where o.x > x by o.x - x", 1),
+        ("nearest o in other A where o.w == w and o.x > x by o.x - x", 2),
+        ("nearest o in other A where abs(o.y - y) <= 2 by abs(o.x - x)", 2),
+        ("nearest o in other A by o.x - x", 0),
+        ("nearest o in other A by abs(o.x + x)", 0),
+        ("nearest o in other A by o.v", 0),
+    ];
+    let mut random = Random(12);
+    for (text, n_axes) in links {
+        let system = model(&format!("link mate = {text}"), "");
+        let link = system.types[0].links.iter().find(|link| !link.updates.is_empty()).expect("there is one");
+        let update = &link.updates[0];
+        let Whither::Nearest { range, filter, key, near, keys } = &update.target else {
+            panic!("{text} leads to {:?}", update.target)
+        };
+        assert_eq!(near.len(), n_axes, "{text}: {near:?}");
+        let asked = Asked {
+            system: &system,
+            guard: filter,
+            condition: &filter.condition,
+            near,
+            slot: range.slot,
+            far: false,
+        };
+        let mut n_less = 0;
+        for _ in 0..4000 {
+            let mut at = Point::random(&asked, &mut random);
+            for (near, keys) in near.iter().zip(keys) {
+                let scale = if random.unit() < 0.5 { 1.0 } else { 100.0 };
+                let gap = random.of_any_size(scale, 1e4);
+                at.put_apart(near, gap);
+                let holds = asked.holds(&mut |node| at.leaf(node, asked.slot));
+                let found = asked.value(*key, &mut |node| at.leaf(node, asked.slot));
+                let limit = found + random.of_any_size(1.0, 1e3).abs();
+                let within = near.within.min(keys.within(limit)) * (1.0 + 1e-9);
+                let is_beyond = at.gap(near).abs() > within;
+                assert!(!(holds && is_beyond), "{text}: {near:?}, key {found} < {limit}, beyond {within}");
+                assert!(
+                    keys.within(keys.beyond(within)) <= within.max(keys.within(f64::NEG_INFINITY)),
+                    "{text}"
+                );
+                n_less += usize::from(holds && within.is_finite());
+            }
+        }
+        assert!(near.is_empty() || n_less > 100, "{text}: only {n_less} points say anything");
     }
 }
 
@@ -324,7 +443,7 @@ fn a_crossing_is_near_its_zero() {
             for _ in 0..4000 {
                 let mut at = Point::random(&asked, &mut random);
                 let gap = random.of_any_size(near.within.max(1e-6) * 1.000_001, 1e4);
-                at.states[1][near.other] = at.states[0][near.own] + gap;
+                at.put_apart(near, gap);
                 let sign = asked.value(g, &mut |node| at.leaf(node, 1)).signum();
                 let known = signs[usize::from(gap > 0.0)].get_or_insert(sign);
                 assert_eq!(*known, sign, "{text} at {:?}", at.states);
@@ -366,7 +485,8 @@ fn claims_have_ranges_as_what_violates_them() {
     let system = model("assert forall o in other A: dist2(self, o) >= 4", "");
     let violation = &system.types[0].modes[0].claims[0].violation;
     let (quantified, all) = first(&violation.condition).unwrap();
-    let found: Vec<_> = quantified.near.iter().map(|near| (near.own, near.other, near.within)).collect();
+    let found: Vec<_> =
+        quantified.near.iter().map(|near| (axis(near.own), axis(near.other), near.within)).collect();
     assert_bounds(&found, &xy(2.0), "an assert");
     assert!(!all);
 }

@@ -4,5 +4,6 @@
 mod forms;
 mod crowd;
 mod lookouts;
+mod mates;
 mod written;
 mod generated;

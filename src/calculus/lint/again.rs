@@ -15,7 +15,7 @@ use crate::calculus::lint::effects::{Effect, before, effect, guard, nodes, plain
 use crate::calculus::lint::truth::{Truth, truth};
 use crate::calculus::reader::Reader;
 use crate::calculus::system::{
-    ActionStep, Condition, Frame, FunctionId, Guard, Relation, System, Target, TransitionSystem,
+    ActionStep, Condition, Entry, Frame, FunctionId, Guard, Relation, System, TransitionSystem,
 };
 use crate::math::Interval;
 
@@ -97,8 +97,8 @@ impl<'s> Kept<'s> {
         for step in &effect.own.steps {
             let ActionStep::Assign { slot: 0, target, value, .. } = step else { continue };
             let leaf = match target {
-                Target::State(column) => Node::State { slot: 0, column: *column as u32 },
-                Target::Aux(column) => Node::Aux { slot: 0, column: *column as u32 },
+                Entry::State(column) => Node::State { slot: 0, column: *column as u32 },
+                Entry::Aux(column) => Node::Aux { slot: 0, column: *column as u32 },
             };
             written.insert(leaf, reader.function(*value));
         }

@@ -4,7 +4,7 @@ use rustc_hash::FxHashSet;
 
 use crate::calculus::graph::{Node, NodeId};
 use crate::calculus::system::{
-    ActionList, ActionStep, AgentSystem, Condition, FunctionId, Guard, System, Target, TransitionSystem,
+    ActionList, ActionStep, AgentSystem, Condition, Entry, FunctionId, Guard, System, TransitionSystem,
     Trigger,
 };
 
@@ -54,19 +54,19 @@ fn tests(condition: &Condition, found: &mut Vec<FunctionId>) {
 }
 
 /// The columns that these nodes read, of whichever agent; `x'` counts as all states.
-pub fn reads(system: &System, ty: &AgentSystem, roots: &[NodeId]) -> FxHashSet<Target> {
+pub fn reads(system: &System, ty: &AgentSystem, roots: &[NodeId]) -> FxHashSet<Entry> {
     let mut found = FxHashSet::default();
     for id in system.graph.reach(roots) {
         match system.graph.node(id) {
             Node::State { column, .. } => {
-                found.insert(Target::State(column as usize));
+                found.insert(Entry::State(column as usize));
             }
             Node::Aux { column, .. } => {
-                found.insert(Target::Aux(column as usize));
+                found.insert(Entry::Aux(column as usize));
             }
             Node::Rate { .. } | Node::Acceleration { .. } => {
-                found.extend((0..ty.layout.n_states).map(Target::State));
-                found.extend((0..ty.layout.n_aux()).map(Target::Aux));
+                found.extend((0..ty.layout.n_states).map(Entry::State));
+                found.extend((0..ty.layout.n_aux()).map(Entry::Aux));
             }
             Node::Constant(_) | Node::Time => {}
             Node::Unary(..) | Node::Binary(..) | Node::Select(..) => {}
@@ -80,9 +80,9 @@ pub struct Effect<'s> {
     /// The transition's own actions.
     pub own: &'s ActionList,
     /// Columns that exit or entry actions write, or that it writes on some condition only.
-    pub unclear: FxHashSet<Target>,
+    pub unclear: FxHashSet<Entry>,
     /// All columns that are written.
-    pub writes: FxHashSet<Target>,
+    pub writes: FxHashSet<Entry>,
     /// It may end the run, or change who there is.
     pub stops: bool,
 }
@@ -96,7 +96,7 @@ pub fn effect<'s>(ty: &'s AgentSystem, transition: &'s TransitionSystem) -> Effe
     let entries = all().filter(|&mode| concerned(mode, target)).map(|mode| &ty.modes[mode].entry);
     let others: Vec<&ActionList> = exits.chain(entries).collect();
     let targets = |list: &ActionList| list.writes.iter().map(|(_, target)| *target).collect::<Vec<_>>();
-    let mut unclear: FxHashSet<Target> = others.iter().flat_map(|list| targets(list)).collect();
+    let mut unclear: FxHashSet<Entry> = others.iter().flat_map(|list| targets(list)).collect();
     for step in &transition.actions.steps {
         if let ActionStep::If { then, otherwise, .. } = step {
             conditional(then, &mut unclear);
@@ -109,7 +109,7 @@ pub fn effect<'s>(ty: &'s AgentSystem, transition: &'s TransitionSystem) -> Effe
     Effect { own: &transition.actions, unclear, writes, stops }
 }
 
-fn conditional(steps: &[ActionStep], found: &mut FxHashSet<Target>) {
+fn conditional(steps: &[ActionStep], found: &mut FxHashSet<Entry>) {
     for step in steps {
         match step {
             ActionStep::Assign { target, .. } | ActionStep::Draw { target, .. } => {
@@ -168,7 +168,7 @@ pub fn comes_before(system: &System, first: &TransitionSystem, second: &Transiti
 }
 
 /// The columns that the conditions of some transitions read.
-pub fn read_by(system: &System, ty: &AgentSystem, transitions: &[&TransitionSystem]) -> FxHashSet<Target> {
+pub fn read_by(system: &System, ty: &AgentSystem, transitions: &[&TransitionSystem]) -> FxHashSet<Entry> {
     let guards = transitions.iter().filter_map(|transition| guard(transition));
     guards.flat_map(|guard| reads(system, ty, &nodes(system, guard))).collect()
 }

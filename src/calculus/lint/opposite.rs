@@ -13,7 +13,7 @@ use crate::calculus::lint::Warning;
 use crate::calculus::lint::effects::{before, effect, plain_guard, read_by, reads};
 use crate::calculus::reader::Reader;
 use crate::calculus::system::{
-    Atom, Condition, Flow, Frame, Guard, Quantified, System, Target, TransitionSystem,
+    Atom, Condition, Entry, Flow, Frame, Guard, Quantified, System, TransitionSystem,
 };
 
 /// How many transitions from one mode to another are compared with those back.
@@ -110,7 +110,7 @@ impl<'s> Loop<'s> {
         let ty = &self.system.types[self.number];
         let transitions = self.transitions();
         let effects = transitions.map(|transition| effect(ty, transition));
-        let writes: FxHashSet<Target> = effects.iter().flat_map(|effect| effect.writes.clone()).collect();
+        let writes: FxHashSet<Entry> = effects.iter().flat_map(|effect| effect.writes.clone()).collect();
         let compared = [a, b].map(|side| self.system.functions[side.atom.value].outputs[0]);
         let leads_out = [self.there, self.back].iter().any(|&k| {
             before(self.system, self.number, k)

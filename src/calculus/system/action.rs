@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Destination, Distribution, Frame, FunctionId, Guard, Target, VarRef};
+use super::{Destination, Distribution, Entry, Frame, FunctionId, Guard, VarRef};
 use crate::base::Span;
 
 /// A transition of an agent type or an interaction.
@@ -99,7 +99,7 @@ pub struct ActionList {
     /// The steps.
     pub steps: Vec<ActionStep>,
     /// Every (slot, variable) that some branch writes, sorted, without duplicates.
-    pub writes: Vec<(usize, Target)>,
+    pub writes: Vec<(usize, Entry)>,
 }
 
 /// A step of a list of actions.
@@ -110,7 +110,7 @@ pub enum ActionStep {
         /// Whose column.
         slot: usize,
         /// Which column.
-        target: Target,
+        target: Entry,
         /// One output.
         value: FunctionId,
         /// Where it stands.
@@ -121,7 +121,7 @@ pub enum ActionStep {
         /// Whose column.
         slot: usize,
         /// Which column.
-        target: Target,
+        target: Entry,
         /// From what.
         distribution: Distribution,
         /// Its parameters, one output each.

@@ -13,6 +13,7 @@ use hyc::runtime::paper::Form;
 use super::crowd;
 use super::forms::{TOLERANCE, both, difference};
 use super::lookouts;
+use super::mates;
 use crate::differential::dice::{WITH_AGGREGATES, WITH_EVENTS};
 use crate::differential::generate;
 use crate::harness::Case;
@@ -137,4 +138,9 @@ fn the_forms_agree_on_crowds() {
 #[test]
 fn the_forms_agree_on_crowds_that_look_around() {
     agree(0, 16, &[], &lookouts::model);
+}
+
+#[test]
+fn the_forms_agree_on_crowds_that_look_for_the_nearest() {
+    agree(0, 16, &[], &mates::model);
 }
