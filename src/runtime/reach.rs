@@ -122,6 +122,8 @@ impl Reaches {
             self.kept[agent].pure = false;
             out.resize(n, Interval::WHOLE);
         }
+        // Where it is later than it has come to is not known.
+        let from = from.min(anchor(agents, groups, agent).0);
         enclosures.states(agents, groups, agent, (from, to), &mut |state, bound| {
             if out[state].is_whole() {
                 out[state] = bound;

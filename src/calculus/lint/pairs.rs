@@ -92,9 +92,9 @@ impl Census<'_> {
 
     /// Who is nearest is found among all.
     fn nearest(&self, update: &LinkUpdate, found: &mut Vec<Warning>) {
-        let Whither::Nearest { range, .. } = &update.target else { return };
+        let Whither::Nearest { range, near, .. } = &update.target else { return };
         let n_pairs = self.pairs([update.frame.slots[0].ty(), range.ty]);
-        if n_pairs > PAIRS_MAX {
+        if near.is_empty() && n_pairs > PAIRS_MAX {
             let name = update.label.clone();
             found.push(Warning::AllAsked { name, span: update.span, n_pairs });
         }

@@ -144,3 +144,11 @@ fn the_forms_agree_on_crowds_that_look_around() {
 fn the_forms_agree_on_crowds_that_look_for_the_nearest() {
     agree(0, 16, &[], &mates::model);
 }
+
+/// Two that follow each other were bounded from where they would be, and not from where they had come to.
+#[test]
+fn the_forms_agree_on_those_who_look_for_each_other() {
+    for number in [122, 251, 410] {
+        agree(number, 1, &[], &mates::model);
+    }
+}
