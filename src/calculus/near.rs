@@ -32,6 +32,9 @@ const CANDIDATES_MAX: usize = 16;
 const FAR: f64 = 1e100;
 /// How much larger than the least that intervals can prove a range may be, relatively.
 const PRECISION: f64 = 1e-9;
+/// What functions can be.
+type Values<'a> = dyn Fn(FunctionId) -> Interval + 'a;
+
 /// The difference d: a leaf that no frame has.
 const GAP: Node = Node::State { slot: u32::MAX, column: 0 };
 
@@ -200,7 +203,7 @@ impl Asker<'_> {
         functions: &[FunctionId],
         [own, other]: [Entry; 2],
         slot: usize,
-        least: &dyn Fn(&dyn Fn(FunctionId) -> Interval) -> f64,
+        least: &dyn Fn(&Values<'_>) -> f64,
     ) -> Keys {
         let (reader, forms) = self.gap_reader(functions, [own, other], slot);
         Keys::new(|within| {
@@ -332,12 +335,7 @@ impl Asker<'_> {
     }
 
     /// Whether a condition certainly is what it is to be, for all values of its functions.
-    fn is_settled(
-        &self,
-        condition: &Condition,
-        settled: Settled,
-        values: &dyn Fn(FunctionId) -> Interval,
-    ) -> bool {
+    fn is_settled(&self, condition: &Condition, settled: Settled, values: &Values<'_>) -> bool {
         let of = |condition: &Condition| self.is_settled(condition, settled, values);
         match (condition, settled) {
             (Condition::Constant(value), _) => *value == (settled == Settled::True),

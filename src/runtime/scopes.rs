@@ -78,8 +78,7 @@ impl<'p> Engine<'p, '_> {
             *scopes.key(seat) = key;
         }
         let scopes = field.scopes.get_or_insert_default();
-        let rooms = nearest.rooms(*scopes.key(seat));
-        rooms
+        nearest.rooms(*scopes.key(seat))
     }
 
     /// The greatest key that the one to whom a link leads can have before the lists are made anew.

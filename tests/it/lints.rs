@@ -456,6 +456,9 @@ fn many_pairs_that_no_distance_prunes_are_told() {
         ("u: when exists o in B: o.z > x { v := 0 }", near, false),
         ("assert forall o in other A: o.v + v >= 0", near, true),
         ("assert forall o in other A: abs(o.x - x) >= 0.5", near, false),
+        ("link l = nearest o in other A by abs(o.x - x)", near, false),
+        ("link l = nearest o in other A where o.p == p and o.x > x by o.x - x", near, false),
+        ("link l = nearest o in other A by o.v", near, true),
     ];
     for (own, guard, warned) in cases {
         assert_eq!(codes(&text(400, own, guard)).contains(&"HY0614"), warned, "{own} {guard}");

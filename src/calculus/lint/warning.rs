@@ -82,8 +82,8 @@ impl From<Warning> for Diagnostic {
             }
             Warning::AllAsked { name, span, n_pairs } => {
                 Diagnostic::warning("HY0614", format!("`{name}` is looked at for all {n_pairs} pairs of agents"))
-                    .label(span, "the nearest is found among all")
-                    .note("near pairs alone are looked at by `exists`, `count` and the like that bound a difference of states")
+                    .label(span, "the nearest is looked for among all: its key bounds no difference between the two")
+                    .note("by a key that grows with a difference, as a distance does, nobody is looked at who is farther than the nearest")
                     .help("ask for somebody in a range, if that will do: `exists o in other Car: abs(o.x - x) <= 10`")
             }
         }
