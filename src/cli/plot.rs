@@ -4,11 +4,12 @@ use std::fs;
 use std::path::Path;
 
 use super::algorithm::{Computed, limits_of, single};
-use super::arguments::{EngineArguments, PlotArguments};
+use super::arguments::{AssertLevel, EngineArguments, PlotArguments, SettingArguments};
+use super::claims;
 use super::input::{load, name_of, reason};
 use super::limits::Limits;
-use super::run::{RecordAll, cast_of, compile, settings_of, simulate};
-use super::terminal::{say, tell};
+use super::run::{RecordAll, cast_of, compile, conclude, settings_of, simulate};
+use super::terminal::{say, say_aside, tell};
 use super::watch::watch;
 use super::{Exit, Refused};
 use crate::base::Diagnostic;
@@ -23,13 +24,19 @@ const TABLE_MAX: u64 = 1 << 30;
 /// Draws, and says where the picture is.
 pub(super) fn plot(arguments: &PlotArguments) -> Result<Exit, Refused> {
     let input = &arguments.input;
-    let traces = if input.extension().is_some_and(|ending| ending == "hy") {
+    let (traces, exit) = if input.extension().is_some_and(|ending| ending == "hy") {
         match traces_of_model(arguments)? {
-            Ok(traces) => traces,
-            Err(exit) => return Ok(exit),
+            (Some(traces), exit) => (traces, exit),
+            (None, exit) => return Ok(exit),
         }
     } else {
-        traces_of_table(input)?
+        if let Some(option) = set(&arguments.settings) {
+            return Err(format!(
+                "`{option}` is for a model that is run, and `{}` is a table",
+                input.display()
+            ));
+        }
+        (traces_of_table(input)?, Exit::Fine)
     };
     let view = view(arguments, &traces)?;
     let out = arguments
@@ -46,7 +53,20 @@ pub(super) fn plot(arguments: &PlotArguments) -> Result<Exit, Refused> {
     fs::write(&out, bytes)
         .map_err(|error| format!("cannot write `{}`: {}", out.display(), reason(&error)))?;
     say(&format!("wrote {}\n", out.display()))?;
-    Ok(Exit::Fine)
+    Ok(exit)
+}
+
+/// An option that says how a model is run, if one is given.
+fn set(settings: &SettingArguments) -> Option<&'static str> {
+    let SettingArguments { params, until, tolerance, absolute, seed } = settings;
+    let given = [
+        (!params.is_empty(), "-p"),
+        (until.is_some(), "--until"),
+        (tolerance.is_some(), "--tolerance"),
+        (absolute.is_some(), "--absolute"),
+        (seed.is_some(), "--seed"),
+    ];
+    given.into_iter().find_map(|(is_given, name)| is_given.then_some(name))
 }
 
 fn traces_of_table(path: &Path) -> Result<Traces, Refused> {
@@ -63,13 +83,13 @@ fn traces_of_table(path: &Path) -> Result<Traces, Refused> {
     Traces::read(&text).map_err(|why| refuse(&why))
 }
 
-/// Runs the model; no file that it names is written.
-fn traces_of_model(arguments: &PlotArguments) -> Result<Result<Traces, Exit>, Refused> {
+/// Runs the model, and says how that ended, if not well; no file that it names is written.
+fn traces_of_model(arguments: &PlotArguments) -> Result<(Option<Traces>, Exit), Refused> {
     let loaded =
         load(&arguments.input, &settings_of(&arguments.settings, None, RecordAll::No, &Limits::default()))?;
     tell(&loaded.sources, &loaded.diagnostics);
     let (exit, sources) = (loaded.exit(), loaded.sources);
-    let Some(mut model) = loaded.model else { return Ok(Err(exit)) };
+    let Some(mut model) = loaded.model else { return Ok((None, exit)) };
     let limits = limits_of(&model, &[])?;
     let Computed { algorithm, backend } = single(&EngineArguments::default(), &mut model, false)?;
     let mut warnings: Vec<Diagnostic> = Vec::new();
@@ -77,7 +97,7 @@ fn traces_of_model(arguments: &PlotArguments) -> Result<Result<Traces, Exit>, Re
         Ok(program) => program,
         Err(diagnostics) => {
             tell(&sources, &diagnostics);
-            return Ok(Err(Exit::ModelErrors));
+            return Ok((None, Exit::ModelErrors));
         }
     };
     let (record, watched) = watch(&model, &program)?;
@@ -89,16 +109,19 @@ fn traces_of_model(arguments: &PlotArguments) -> Result<Result<Traces, Exit>, Re
     tables.also(&mut recording);
     let outcome = simulate(algorithm, &program, &limits.run, &mut tables, false)?;
     drop(tables);
-    if let End::Error(diagnostic) = &outcome.end {
-        // what has been computed until then is drawn
-        tell(&sources, std::slice::from_ref(diagnostic));
+    tell(&sources, &claims::diagnostics(&outcome.false_asserts, &cast));
+    tell(&sources, &claims::of_properties(&outcome.verdicts));
+    if matches!(outcome.end, End::Interrupted) {
+        say_aside(&format!("interrupted at t = {} s\n", outcome.time));
     }
+    // What has been computed until then is drawn.
+    let exit = conclude(&outcome, &sources, AssertLevel::Error);
     recording.close();
     let labels = watched.columns.iter().map(|column| match &column.unit {
         Some(unit) => format!("{}, {unit}", column.name),
         None => column.name.clone(),
     });
-    Ok(Ok(Traces::of(&recording, &labels.collect::<Vec<_>>())))
+    Ok((Some(Traces::of(&recording, &labels.collect::<Vec<_>>())), exit))
 }
 
 /// What `--xy` and `--columns` ask for; without them everything over time.

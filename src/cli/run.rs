@@ -211,7 +211,7 @@ pub(super) fn simulate(
 }
 
 /// Says how the run ended, if not well, and with which exit code the process ends.
-fn conclude(outcome: &Outcome, sources: &SourceMap, asserts: AssertLevel) -> Exit {
+pub(super) fn conclude(outcome: &Outcome, sources: &SourceMap, asserts: AssertLevel) -> Exit {
     match &outcome.end {
         End::Error(diagnostic) => {
             tell(sources, std::slice::from_ref(diagnostic));

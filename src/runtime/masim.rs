@@ -48,7 +48,9 @@ impl Engine<'_, '_> {
             let cover = self.cover().min(until);
             self.certify_up_to(cover);
             if self.interrupted() {
-                let known = self.known_until(cover);
+                // Tables are complete up to there.
+                let told = self.recorder.next().min(self.next_step()).max(self.present.time);
+                let known = self.known_until(cover).min(told);
                 self.present.go(known);
                 return Ok(Some(End::Interrupted));
             }

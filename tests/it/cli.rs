@@ -577,3 +577,33 @@ fn a_step_size_is_no_setting_and_a_wrong_name_lists_all() {
     expect(&refused("h_min 0.5 h_max 0.1"), 1, &["HY0281", "no more than `h_max`"]);
     expect(&refused("event_tolerence 1e-9"), 1, &["HY0280", "did you mean `event_tolerance`?"]);
 }
+
+/// The time that is told is that up to which the samples have been written, though a step leads much farther.
+#[cfg(unix)]
+#[test]
+fn an_interruption_tells_up_to_when_the_tables_are_complete() {
+    use std::time::{Duration, Instant};
+    let text = "agent A { state x = 0  flow { x' = 1 } }  system { a = A() }
+                run { until 100  record a every 1e-7 to \"a.csv\" }";
+    let folder = folder(&[("a.hy", text)]);
+    let child = command(folder.path(), &["run", "a.hy", "--final", "f.csv"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    let table = folder.path().join("a.csv");
+    while fs::metadata(&table).map_or(0, |file| file.len()) == 0 && begun.elapsed() < Duration::from_secs(60)
+    {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let done = done(child.wait_with_output().unwrap());
+    expect(&done, 130, &["interrupted at t = "]);
+    let value = |name: &str, column: usize| -> f64 {
+        let text = read(&folder, name);
+        text.lines().last().unwrap().split(',').nth(column).unwrap().parse().unwrap()
+    };
+    let (last, told) = (value("a.csv", 0), value("f.csv", 0));
+    assert!(last < told && told < last + 1.5e-7, "the table ends at {last}, the run at {told}");
+}

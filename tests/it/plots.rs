@@ -131,3 +131,36 @@ fn what_cannot_be_drawn_is_refused_in_words() {
         assert!(output.status.code() == Some(2) && err.contains(says), "{words:?}: {err}");
     }
 }
+
+/// What has been computed is drawn, and the exit code is that of `hyc run`.
+#[test]
+fn a_run_that_does_not_end_well_has_its_exit_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases = [
+        ("blows", "agent A { state x = 1  flow { x' = x*x } }  system { a = A() }  run { until 5 }", 3),
+        (
+            "lies",
+            "agent A { state x = 1  flow { x' = 1 }  assert x < 2 }  system { a = A() }  run { until 5 }",
+            4,
+        ),
+        ("fine", "agent A { state x = 1  flow { x' = 1 } }  system { a = A() }  run { until 5 }", 0),
+    ];
+    for (name, text, code) in cases {
+        fs::write(folder.path().join(format!("{name}.hy")), text).unwrap();
+        let output = hyc(folder.path(), &["plot", &format!("{name}.hy")]);
+        assert_eq!(output.status.code(), Some(code), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        assert!(read(folder.path(), &format!("{name}.svg")).contains("<polyline"), "{name}");
+    }
+}
+
+#[test]
+fn a_table_takes_no_setting_of_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("t.csv"), "time,micro,agent,mode,x\n0,0,a,,1\n1,0,a,,2\n").unwrap();
+    fine(folder.path(), &["plot", "t.csv"]);
+    for option in ["--until=5", "--seed=1", "-pa=1"] {
+        let output = hyc(folder.path(), &["plot", "t.csv", option]);
+        assert_eq!(output.status.code(), Some(2), "{option}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains("is for a model that is run"), "{option}");
+    }
+}
