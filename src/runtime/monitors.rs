@@ -18,6 +18,9 @@ const PIECES_MAX: usize = 100_000;
 /// A trace goes on for so long behind its last window: a window may be a point of time, a stretch of a signal is not. s.
 const BEYOND: f64 = 1e-6;
 
+/// How often a shorter stretch is tried over which a member does not come to decide.
+const HALVES_MAX: usize = 8;
+
 /// What is not better than the best by this share of it is not looked for.
 const SHARE: f64 = 1e-14;
 
@@ -221,13 +224,13 @@ fn watch_members(
         margins.only = Some(member);
         let known = margins.known_from(s).filter(|&known| known > e);
         let best = found.as_ref().map_or(f64::INFINITY, |found| extreme.sign() * found.value);
-        let stays = |known: &f64| {
-            let value = margins.over(s, *known).value;
+        let stays = |until: f64| {
+            let value = margins.over(s, until).value;
             let least = if extreme == Extreme::Least { value.lo } else { -value.hi };
             least > best
         };
-        match known.filter(stays) {
-            Some(known) => looked_at.push((member, known)),
+        match known.and_then(|known| farthest((s, e), known, stays)) {
+            Some(until) => looked_at.push((member, until)),
             None => {
                 search(margins, extreme, (s, e), found);
                 looked_at.push((member, e));
@@ -235,6 +238,12 @@ fn watch_members(
         }
     }
     looked_at.into_iter().for_each(|(member, until)| lookout.look_again(member, until));
+}
+
+/// A time beyond `e` up to which something stays as it is from `s` on: `known`, or less by halves.
+fn farthest((s, e): (f64, f64), known: f64, mut stays: impl FnMut(f64) -> bool) -> Option<f64> {
+    let halves = std::iter::successors(Some(known), |until| Some(s + 0.5 * (until - s)));
+    halves.take(HALVES_MAX).take_while(|&until| until > e).find(|&until| stays(until))
 }
 
 /// Whether a value is less than the least so far, by more than rounding.
