@@ -115,25 +115,27 @@ pub(super) struct EngineArguments {
     pub(super) limits: Vec<(String, u64)>,
 }
 
+/// Over the options of these in a help text.
+const OF_2004: &str = "Options of masim-2004 and sasim-2004";
+
 /// What the published algorithms take besides the tolerance; `run { }` has the same settings.
 #[derive(Clone, Copy, Debug, Default, Args)]
-#[command(next_help_heading = "Options of masim-2004 and sasim-2004")]
 pub(super) struct PaperArguments {
     /// The share of a guard that a step towards it leaves over [default: 0.1]
-    #[arg(long, value_name = "G", value_parser = share)]
+    #[arg(long, help_heading = OF_2004, value_name = "G", value_parser = share)]
     pub(super) gamma: Option<f64>,
     /// The least step that a guard may ask for, in seconds [default: 1e-10]
-    #[arg(long, value_name = "H", value_parser = finite_positive)]
+    #[arg(long, help_heading = OF_2004, value_name = "H", value_parser = finite_positive)]
     pub(super) h_min: Option<f64>,
     /// The longest step, in seconds [default: 0.5]
-    #[arg(long, value_name = "H", value_parser = finite_positive)]
+    #[arg(long, help_heading = OF_2004, value_name = "H", value_parser = finite_positive)]
     pub(super) h_max: Option<f64>,
     /// Clocks count as equal within this, in seconds [default: 1e-9]
-    #[arg(long, value_name = "E", value_parser = finite_positive)]
+    #[arg(long, help_heading = OF_2004, value_name = "E", value_parser = finite_positive)]
     pub(super) synchronisation: Option<f64>,
     /// A guard counts as zero within this, in its own unit [default: 1e-6]. With masim: roots within this time of each other
     /// are one instant if their transitions share an agent, in seconds [default: 1e-12]
-    #[arg(long, value_name = "E", value_parser = finite_positive)]
+    #[arg(long, help_heading = OF_2004, value_name = "E", value_parser = finite_positive)]
     pub(super) event_tolerance: Option<f64>,
 }
 
