@@ -32,6 +32,16 @@ impl Condition {
             condition => std::slice::from_ref(condition),
         }
     }
+
+    /// Whether a quantifier stands in it.
+    pub fn quantifies(&self) -> bool {
+        match self {
+            Condition::Constant(_) | Condition::Discrete(_) | Condition::Atom(_) => false,
+            Condition::And(all) | Condition::Or(all) => all.iter().any(Condition::quantifies),
+            Condition::Exists(_) | Condition::Forall(_) => true,
+            Condition::Rising(_, condition) => condition.quantifies(),
+        }
+    }
 }
 
 impl ActionList {

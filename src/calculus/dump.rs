@@ -495,9 +495,9 @@ impl<'a> Block<'a> {
     }
 }
 
-/// The name of a column that is written.
-fn column(sheet: &Sheet, slot: usize, target: Entry) -> String {
-    match target {
+/// The name of a variable of the agent in a slot.
+fn column(sheet: &Sheet, slot: usize, entry: Entry) -> String {
+    match entry {
         Entry::State(k) => sheet.state(slot, k),
         Entry::Aux(k) => sheet.aux(slot, k),
     }

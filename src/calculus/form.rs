@@ -150,16 +150,7 @@ impl Forms {
             (Op::Div, [a, b]) => {
                 self.as_constant(*b).filter(|k| *k != 0.0).map(|k| self.sum(*a, 1.0 / k, None))
             }
-            (Op::Le | Op::Lt, [a, b]) => self.compared(op, *a, *b).ok(),
-            (Op::Eq | Op::Ne, [a, b]) => match self.compared(op, *a, *b) {
-                Ok(truth) => Some(truth),
-                // By their difference, which may be known where both are not.
-                Err(Some(difference)) => {
-                    let zero = self.constant(0.0);
-                    Some(self.opaque(op, &[difference, zero]))
-                }
-                Err(None) => None,
-            },
+            (Op::Le | Op::Lt | Op::Eq | Op::Ne, [a, b]) => self.compared(op, *a, *b),
             _ => None,
         };
         linear.unwrap_or_else(|| self.opaque(op, operands))
@@ -214,12 +205,17 @@ impl Forms {
         self.intern(Form { terms: all, constant })
     }
 
-    /// A comparison of what differs by a constant, or by what is certainly of one sign; else the difference, if it is finite.
-    fn compared(&mut self, op: Op, a: FormId, b: FormId) -> Result<FormId, Option<FormId>> {
-        let difference = self.plus(a, -1.0, b).ok_or(None)?;
+    /// A comparison of what differs by a constant, or by what is certainly of one sign; whether two are the same by their
+    /// difference, which may be known where both are not.
+    fn compared(&mut self, op: Op, a: FormId, b: FormId) -> Option<FormId> {
+        let difference = self.plus(a, -1.0, b)?;
         let zero = Interval::ZERO;
         let truth = Interval::eval(op, &[self.interval(difference), zero]);
-        if truth.is_true() || truth.is_false() { Ok(self.constant(truth.lo)) } else { Err(Some(difference)) }
+        if truth.is_true() || truth.is_false() {
+            return Some(self.constant(truth.lo));
+        }
+        let zero = self.constant(0.0);
+        matches!(op, Op::Eq | Op::Ne).then(|| self.opaque(op, &[difference, zero]))
     }
 
     fn opaque(&mut self, op: Op, operands: &[FormId]) -> FormId {

@@ -1,5 +1,6 @@
 //! Where the values of an agent stand: the columns of its rows, in order.
 
+use crate::calculus::graph::Node;
 use crate::math::Scale;
 
 /// The columns of an agent type.
@@ -92,4 +93,15 @@ pub enum Entry {
     State(usize),
     /// A parameter or a discrete variable, by its auxiliary column (absolute index).
     Aux(usize),
+}
+
+impl Entry {
+    /// The leaf that reads it of the agent in a slot.
+    pub fn leaf(self, slot: usize) -> Node {
+        let slot = slot as u32;
+        match self {
+            Entry::State(column) => Node::State { slot, column: column as u32 },
+            Entry::Aux(column) => Node::Aux { slot, column: column as u32 },
+        }
+    }
 }

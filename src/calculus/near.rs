@@ -329,7 +329,7 @@ impl Asker<'_> {
         [own, other]: [Entry; 2],
         slot: usize,
     ) -> (Reader<'_>, FxHashMap<FunctionId, FormId>) {
-        let mut reader = self.reader(functions, Some([leaf(0, own), leaf(slot, other)]));
+        let mut reader = self.reader(functions, Some([own.leaf(0), other.leaf(slot)]));
         let forms = functions.iter().map(|&function| (function, reader.function(function))).collect();
         (reader, forms)
     }
@@ -364,14 +364,6 @@ impl Asker<'_> {
             (Condition::Rising(_, inner), Settled::False) => of(inner),
             (Condition::Rising(..), Settled::True) => false,
         }
-    }
-}
-
-fn leaf(slot: usize, entry: Entry) -> Node {
-    let slot = slot as u32;
-    match entry {
-        Entry::State(column) => Node::State { slot, column: column as u32 },
-        Entry::Aux(column) => Node::Aux { slot, column: column as u32 },
     }
 }
 

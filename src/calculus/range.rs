@@ -28,6 +28,11 @@ pub struct Near {
 }
 
 impl Near {
+    /// What is compared of the agent on one side, 0 or 1.
+    pub fn entry(&self, side: usize) -> Entry {
+        if side == 0 { self.own } else { self.other }
+    }
+
     /// The two states, if it is of states.
     pub fn states(&self) -> Option<[usize; 2]> {
         match (self.own, self.other) {

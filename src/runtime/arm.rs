@@ -400,7 +400,7 @@ impl<'p> Engine<'p, '_> {
         let mut reach: Vec<usize> = concerned.iter().flat_map(|&agent| self.agents.readers(agent)).collect();
         reach.sort_unstable();
         reach.dedup();
-        self.monitors.doubt(&reach);
+        self.monitors.doubt(&reach, |agent| self.agents.agents[agent].ty);
         for instance in reading {
             if !self.guards.instances[instance as usize].active {
                 continue;

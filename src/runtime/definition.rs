@@ -224,7 +224,7 @@ fn define<'p>(
         base = binders.comparisons.len();
         binders.around.clear();
         binders.add(guard);
-        if !folds.is_empty() || quantifies(&guard.condition) {
+        if !folds.is_empty() || guard.condition.quantifies() {
             let own = if matches!(origin, Origin::Pair(_)) { 2 } else { 1 };
             quantified = frame.slots[own..].iter().map(|slot| slot.ty()).collect();
             quantified.sort_unstable();
@@ -310,7 +310,7 @@ impl Definition<'_> {
             !fold.near.is_empty()
                 && !fold.reads.iter().any(reads_another)
                 && fold.filter.n_rising == 0
-                && !quantifies(&fold.filter.condition)
+                && !fold.filter.condition.quantifies()
         };
         let is_property = matches!(self.origin, Origin::Claim(ClaimSystem { kind: ClaimKind::Property, .. }));
         !is_property && self.folds.iter().all(is_ranged)
@@ -325,7 +325,7 @@ fn ranged<'p>(condition: &'p Condition, found: &mut Vec<(&'p Quantified, bool)>)
         Condition::And(all) | Condition::Or(all) => all.iter().all(|condition| ranged(condition, found)),
         Condition::Exists(quantified) | Condition::Forall(quantified) => {
             found.push((quantified, matches!(condition, Condition::Forall(_))));
-            !quantified.near.is_empty() && !quantifies(&quantified.body)
+            !quantified.near.is_empty() && !quantified.body.quantifies()
         }
         Condition::Rising(..) => false,
     }
@@ -462,14 +462,5 @@ impl<'p> Binders<'p> {
         };
         let reads = |range: &&Range| atom.slots.iter().any(|&slot| root(slot) == range.slot);
         self.around.iter().filter(reads).copied().collect()
-    }
-}
-
-fn quantifies(condition: &Condition) -> bool {
-    match condition {
-        Condition::Constant(_) | Condition::Discrete(_) | Condition::Atom(_) => false,
-        Condition::And(all) | Condition::Or(all) => all.iter().any(quantifies),
-        Condition::Exists(_) | Condition::Forall(_) => true,
-        Condition::Rising(_, condition) => quantifies(condition),
     }
 }

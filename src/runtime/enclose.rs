@@ -252,8 +252,7 @@ impl Enclosures {
             if !image.iter().all(|bound| bound.is_finite()) {
                 return None;
             }
-            let inside =
-                image.iter().zip(&guess).all(|(image, guess)| guess.lo <= image.lo && image.hi <= guess.hi);
+            let inside = guess.iter().zip(&image).all(|(guess, &image)| guess.encloses(image));
             if inside {
                 return Some(rates);
             }

@@ -5,8 +5,6 @@
 //! Science 410, 2009.) Between events a margin is a function of the agents' dense output; its bounds over a stretch
 //! come from bounds of g, g' and g'' there.
 
-use smallvec::SmallVec;
-
 use crate::codegen::program::{Atom, Condition, Guard, Quantified, Relation};
 use crate::math::Interval;
 use crate::runtime::detect::{AtomCurve, CurveRows};
@@ -104,19 +102,11 @@ impl<'p> Margins<'_, 'p> {
         self.spot(&guard.condition, &slots, when)
     }
 
-    /// The quantifier that the condition is, if its body reads nobody but whom it binds and whom links lead to from there.
-    pub fn outermost(&self) -> Option<&'p Quantified> {
-        let guard = self.guard;
-        let (Condition::Forall(quantified) | Condition::Exists(quantified)) = &guard.condition else {
-            return None;
-        };
-        let reads_folds = !self.guards.definition(self.instance).folds.is_empty();
-        (!reads_folds && is_plain(&quantified.body)).then_some(quantified)
-    }
-
     /// Up to when the ways of the only agent, and of those to whom links lead from there, go on as they are known at `t`.
     pub fn known_from(&self, t: f64) -> Option<f64> {
-        let quantified = self.outermost()?;
+        let (Condition::Forall(quantified) | Condition::Exists(quantified)) = &self.guard.condition else {
+            return None;
+        };
         let slots = self.bindings(quantified, &self.slots()).pop()?;
         let read = slots.into_iter().filter(|&agent| agent != ABSENT).map(|agent| &self.agents.agents[agent]);
         let ways = read.filter(|agent| !agent.states.is_empty()).map(|agent| &agent.segment);
@@ -217,11 +207,11 @@ impl<'p> Margins<'_, 'p> {
             self.agents.follow_links(frame, &mut bound);
             bound
         };
-        let range: SmallVec<[usize; 1]> = match self.only {
-            Some(only) => SmallVec::from_slice(&[only]),
-            None => self.agents.of_type[quantified.ty].iter().copied().collect(),
+        let range = match &self.only {
+            Some(only) => std::slice::from_ref(only),
+            None => &self.agents.of_type[quantified.ty],
         };
-        range.into_iter().filter(|&agent| allowed(quantified, &roots, agent)).map(bind).collect()
+        range.iter().copied().filter(|&agent| allowed(quantified, &roots, agent)).map(bind).collect()
     }
 
     fn comparison(&mut self, number: usize, slots: &Slots, when: When) -> Spot {
@@ -308,15 +298,6 @@ impl<'p> Margins<'_, 'p> {
 
 fn negative(x: Interval) -> Interval {
     Interval { lo: -x.hi, hi: -x.lo }
-}
-
-/// Whether a condition has no quantifier.
-fn is_plain(condition: &Condition) -> bool {
-    match condition {
-        Condition::Constant(_) | Condition::Discrete(_) | Condition::Atom(_) => true,
-        Condition::And(all) | Condition::Or(all) => all.iter().all(is_plain),
-        Condition::Exists(_) | Condition::Forall(_) | Condition::Rising(..) => false,
-    }
 }
 
 /// The margin of what is no comparison.

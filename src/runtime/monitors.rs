@@ -4,7 +4,7 @@
 //! for its own jumps. Its extremes are found by branch and bound: pieces that cannot hold a better value are left out, pieces on
 //! which the rate keeps its sign have it at an end. So nothing is sampled, and nothing of the run is changed.
 
-use crate::codegen::program::{ClaimSystem, Condition, Quantified};
+use crate::codegen::program::ClaimSystem;
 use crate::runtime::engine::Engine;
 use crate::runtime::lookout::Lookout;
 use crate::runtime::margins::{Margins, When};
@@ -60,13 +60,10 @@ impl<'p> Engine<'p, '_> {
             Watched::Extreme { extreme, condition, window, found, lookout } => {
                 let (s, e) = (s.max(window[0]), e.min(window[1]));
                 let mut margins = self.margins(conditions[*condition]);
-                let decides = |quantified: &&Quantified| {
-                    let has_members = !margins.agents.of_type[quantified.ty].is_empty();
-                    has_members && *extreme == picked(&margins.guard.condition)
-                };
-                let outermost = margins.outermost().filter(decides);
-                if let Some(quantified) = outermost {
-                    return watch_members(&mut margins, quantified, (*extreme, found), lookout, when, (s, e));
+                let of_type = &margins.agents.of_type;
+                let lookout = lookout.as_mut().filter(|lookout| !of_type[lookout.ty].is_empty());
+                if let Some(lookout) = lookout {
+                    return watch_members(&mut margins, (*extreme, found), lookout, when, (s, e));
                 }
                 match when {
                     When::Now if s <= e => consider(&mut margins, *extreme, s, When::Now, found),
@@ -182,25 +179,20 @@ impl<'p> Engine<'p, '_> {
     }
 }
 
-/// Which extreme over time a quantifier has over its members.
-fn picked(condition: &Condition) -> Extreme {
-    if matches!(condition, Condition::Exists(_)) { Extreme::Greatest } else { Extreme::Least }
-}
-
 /// Watches a quantifier member by member, each from when on it may come to decide.
 fn watch_members(
     margins: &mut Margins<'_, '_>,
-    quantified: &Quantified,
     (extreme, found): (Extreme, &mut Option<Found>),
     lookout: &mut Lookout,
     when: When,
     (s, e): (f64, f64),
 ) {
     if !std::mem::replace(&mut lookout.has_begun, true) {
-        margins.agents.of_type[quantified.ty].iter().for_each(|&member| lookout.doubt(member));
+        margins.agents.of_type[lookout.ty].iter().for_each(|&member| lookout.doubt(member));
     }
     let agents = margins.agents;
-    let is_member = |place: usize| agents.is_alive(place) && agents.agents[place].ty == quantified.ty;
+    let ty = lookout.ty;
+    let is_member = |place: usize| agents.is_alive(place) && agents.agents[place].ty == ty;
     let is_watched = s <= e;
     if when == When::Now {
         for member in lookout.take_doubted() {

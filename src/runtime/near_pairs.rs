@@ -58,7 +58,7 @@ impl<'p> Engine<'p, '_> {
                 let types = [definition.ty, ty];
                 let is_same = |near: &Near| near.own == near.other;
                 let alike = types[0] == types[1] && near.iter().all(is_same) && !is_link;
-                let scopes = is_link.then(Scopes::default);
+                let scopes = Scopes::default();
                 let (seats, grid, listed) = ([0; 2], Grid::default(), Vec::new());
                 let definition = number;
                 fields.push(Field {
@@ -71,6 +71,7 @@ impl<'p> Engine<'p, '_> {
                     seats,
                     grid,
                     listed,
+                    is_link,
                     scopes,
                 });
             };
@@ -114,10 +115,7 @@ impl<'p> Engine<'p, '_> {
         let near = self.ranges_of(field);
         let mut boxes = Vec::new();
         field.seats = field.seats_of(&self.agents);
-        if let Some(scopes) = &mut field.scopes {
-            scopes.changed.clear();
-            (scopes.ways, scopes.rooms) = (0.0, 0.0);
-        }
+        field.scopes.changed.clear();
         for side in field.sides() {
             for seat in 0..field.seats[side] {
                 match self.agents.seats[field.types[side]][seat] {
@@ -189,7 +187,7 @@ impl<'p> Engine<'p, '_> {
     }
 
     /// Lists a pair of a field.
-    pub fn enter(&mut self, field: &mut Field, agents: [u32; 2]) -> Result<New, Failure> {
+    fn enter(&mut self, field: &mut Field, agents: [u32; 2]) -> Result<New, Failure> {
         let Some(number) = field.quantifier else {
             let instance = self.new_pair(field.definition, agents)?;
             field.listed.push(Listed { agents, instance });
@@ -220,9 +218,9 @@ impl<'p> Engine<'p, '_> {
 
     /// Where an agent can get to before the lists are made anew, in what is compared of it, with half of the range around; of a
     /// link the owner with all of it.
-    pub fn reach(&mut self, field: &mut Field, agent: usize, side: usize) -> Way {
+    fn reach(&mut self, field: &mut Field, agent: usize, side: usize) -> Way {
         let near = self.ranges_of(field);
-        let rooms: SmallVec<[f64; 4]> = if field.scopes.is_some() {
+        let rooms: SmallVec<[f64; 4]> = if field.is_link {
             self.rooms(field, agent, side)
         } else {
             near.iter().map(|near| 0.5 * near.within * (1.0 + 1e-12)).collect()
@@ -235,7 +233,7 @@ impl<'p> Engine<'p, '_> {
         let near = self.ranges_of(field);
         let (way, aux) = (self.way(agent), &self.agents.agents[agent].aux);
         let around = |(near, room): (&Near, &f64)| {
-            let bound = match if side == 0 { near.own } else { near.other } {
+            let bound = match near.entry(side) {
                 Entry::State(k) => way[k],
                 Entry::Aux(column) => Interval::point(aux[column]),
             };
@@ -295,17 +293,34 @@ impl<'p> Engine<'p, '_> {
                 moved.extend(self.box_anew(field, agent, side));
             }
         }
-        moved.extend(field.scopes.iter_mut().flat_map(|scopes| std::mem::take(&mut scopes.changed)));
-        let mut wanted: Vec<[u32; 2]> = Vec::new();
-        for &number in &moved {
-            for other in field.grid.around(number) {
-                wanted.extend(field.pairs(&self.agents, number.min(other), number.max(other)));
-            }
-        }
+        moved.append(&mut field.scopes.changed);
+        let mut wanted = self.pairs_around(field, &moved);
         let selves =
             born.iter().filter(|&&agent| field.with_self && self.agents.agents[agent].ty == field.types[0]);
         wanted.extend(selves.map(|&agent| [agent as u32; 2]));
-        for agents in wanted {
+        self.enter_new(field, wanted, born, armed)
+    }
+
+    /// The pairs for which the boxes of these numbers stand, with those that they overlap.
+    pub fn pairs_around(&self, field: &Field, numbers: &[u32]) -> Vec<[u32; 2]> {
+        let mut pairs = Vec::new();
+        for &number in numbers {
+            for other in field.grid.around(number) {
+                pairs.extend(field.pairs(&self.agents, number.min(other), number.max(other)));
+            }
+        }
+        pairs
+    }
+
+    /// Lists those of some pairs that are not listed yet.
+    pub fn enter_new(
+        &mut self,
+        field: &mut Field,
+        pairs: Vec<[u32; 2]>,
+        born: &[usize],
+        armed: &mut Vec<u32>,
+    ) -> Result<(), Failure> {
+        for agents in pairs {
             if !self.has_pair(field, agents) {
                 let new = self.enter(field, agents)?;
                 self.introduce(new, born, armed)?;
@@ -315,12 +330,12 @@ impl<'p> Engine<'p, '_> {
     }
 
     /// Gives an agent a box anew; its number, if the agent may leave the one that it had.
-    pub fn box_anew(&mut self, field: &mut Field, agent: usize, side: usize) -> Option<u32> {
+    fn box_anew(&mut self, field: &mut Field, agent: usize, side: usize) -> Option<u32> {
         let number = field.number(&self.agents, agent, side)?;
         let bounds = self.reach(field, agent, side);
         let known = field.grid.get(number);
-        let leaves = bounds.iter().zip(known).any(|(new, old)| new.lo < old.lo || old.hi < new.hi);
-        leaves.then(|| {
+        let stays = known.iter().zip(&bounds).all(|(known, &new)| known.encloses(new));
+        (!stays).then(|| {
             field.grid.change(number, &bounds);
             number
         })
@@ -328,7 +343,7 @@ impl<'p> Engine<'p, '_> {
 
     /// Arms an instance of a pair that is new in a list, because one of the two is new, or because they have come near; or
     /// settles the comparisons with a new candidate.
-    pub fn introduce(&mut self, new: New, born: &[usize], armed: &mut Vec<u32>) -> Result<(), Failure> {
+    fn introduce(&mut self, new: New, born: &[usize], armed: &mut Vec<u32>) -> Result<(), Failure> {
         let New { instance, candidate } = new;
         if let Some(nominee) = candidate {
             let rule = if born.contains(&nominee.agent) { Rule::Fresh } else { Rule::Rates };
@@ -344,7 +359,7 @@ impl<'p> Engine<'p, '_> {
         self.arm(instance, Rule::Fresh)
     }
 
-    pub fn has_pair(&self, field: &Field, [first, second]: [u32; 2]) -> bool {
+    fn has_pair(&self, field: &Field, [first, second]: [u32; 2]) -> bool {
         if let Some(number) = field.quantifier {
             let instance = self.guards.instance_of(field.definition, first as usize);
             return instance.is_some_and(|instance| {

@@ -14,7 +14,7 @@ use crate::runtime::population::Agents;
 pub const NOWHERE: Interval = Interval { lo: f64::INFINITY, hi: f64::NEG_INFINITY };
 
 /// Boxes of an agent's states.
-pub type Way = SmallVec<[Interval; 4]>;
+pub type Way = SmallVec<[Interval; 8]>;
 
 /// The pairs of all interactions that have a range.
 #[derive(Default)]
@@ -25,7 +25,7 @@ pub struct Neighbours {
     pub span: f64,
     /// One for each transition of an interaction, and for each quantifier, that has a range.
     pub fields: Vec<Field>,
-    /// Where agents get to before that, by place, as far as anybody has asked.
+    /// Where agents get to before that who follow others, or may be followed, by place, as far as anybody has asked.
     pub ways: Vec<Option<Way>>,
 }
 
@@ -50,8 +50,10 @@ pub struct Field {
     /// Pairs that have instances, with those; of a quantifier with the instance of the guard. In no order, and with some whose agents
     /// have died since.
     pub listed: Vec<Listed>,
-    /// Of a link to whoever is nearest: how far that looks.
-    pub scopes: Option<Scopes>,
+    /// Whether it is of a link to whoever is nearest: then its scopes say how far each owner looks.
+    pub is_link: bool,
+    /// See above.
+    pub scopes: Scopes,
 }
 
 /// How far those look who have a link to whoever is nearest.
@@ -61,10 +63,6 @@ pub struct Scopes {
     pub keys: Vec<f64>,
     /// Boxes that have changed since their pairs were listed.
     pub changed: Vec<u32>,
-    /// Sums over all owners, of axes in which a scope is finite: how far they may get, and how far they look.
-    pub ways: f64,
-    /// See `ways`.
-    pub rooms: f64,
 }
 
 impl Scopes {
@@ -139,9 +137,8 @@ impl Neighbours {
             *way = None;
         }
         for field in &mut self.fields {
-            if let Some(scopes) = field.scopes.as_mut().filter(|_| agents.agents[agent].ty == field.types[0])
-            {
-                *scopes.key(agents.agents[agent].seat) = f64::INFINITY;
+            if field.is_link && agents.agents[agent].ty == field.types[0] {
+                *field.scopes.key(agents.agents[agent].seat) = f64::INFINITY;
             }
             for side in field.sides() {
                 let number = field.number(agents, agent, side);

@@ -251,9 +251,14 @@ impl<'p> Agents<'p> {
             .collect()
     }
 
+    /// Whether any flow reads states of another agent of its type.
+    pub fn may_be_followed(&self, agent: usize) -> bool {
+        self.is_followed[self.agents[agent].ty]
+    }
+
     /// The agents whose active flows read states of an agent, without itself.
     pub fn followers(&self, agent: usize) -> Vec<usize> {
-        if !self.is_followed[self.agents[agent].ty] {
+        if !self.may_be_followed(agent) {
             return Vec::new();
         }
         let mut followers = self.readers(agent);

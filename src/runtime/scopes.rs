@@ -73,12 +73,9 @@ impl<'p> Engine<'p, '_> {
         let target = self.agents.linked(agent, nearest.update.link);
         let seat = self.agents.agents[agent].seat;
         if target != ABSENT {
-            let key = self.key_at_most(nearest.update, agent, target);
-            let scopes = field.scopes.get_or_insert_default();
-            *scopes.key(seat) = key;
+            *field.scopes.key(seat) = self.key_at_most(nearest.update, agent, target);
         }
-        let scopes = field.scopes.get_or_insert_default();
-        nearest.rooms(*scopes.key(seat))
+        nearest.rooms(*field.scopes.key(seat))
     }
 
     /// The greatest key that the one to whom a link leads can have before the lists are made anew.
@@ -90,7 +87,7 @@ impl<'p> Engine<'p, '_> {
         let mut states = StateBoxes::new();
         for (slot, &agent) in slots.iter().enumerate() {
             let is_read = (slot == 0 || slot == range.slot) && agent != ABSENT;
-            states.push(if is_read { self.way(agent).into_iter().collect() } else { SmallVec::new() });
+            states.push(if is_read { self.way(agent) } else { Way::new() });
         }
         let span = (self.present.time, self.neighbours.until.max(self.present.time));
         self.range_over(key, &slots, &states, span).hi
@@ -98,7 +95,7 @@ impl<'p> Engine<'p, '_> {
 
     /// Those whose link leads to one of some agents: how far they look depends on these.
     pub fn owners_led_to(&self, field: &Field, agents: &[usize]) -> Vec<usize> {
-        if field.scopes.is_none() {
+        if !field.is_link {
             return Vec::new();
         }
         let known: FxHashSet<usize> = agents.iter().copied().collect();
@@ -115,7 +112,7 @@ impl<'p> Engine<'p, '_> {
     pub fn look_farther(&mut self, instance: u32, key: Option<f64>, tries: usize) -> Result<bool, Failure> {
         let definition = self.guards.instances[instance as usize].definition as usize;
         let mut fields = std::mem::take(&mut self.neighbours.fields);
-        let field = fields.iter_mut().find(|field| field.scopes.is_some() && field.definition == definition);
+        let field = fields.iter_mut().find(|field| field.is_link && field.definition == definition);
         let done = field.map_or(Ok(false), |field| self.look_farther_in(field, instance, key, tries));
         self.neighbours.fields = fields;
         done
@@ -131,8 +128,7 @@ impl<'p> Engine<'p, '_> {
         let nearest = self.nearest_of(field);
         let agent = self.guards.instances[instance as usize].roots[0] as usize;
         let distance = nearest.first(&field.grid) * WIDER.powi(tries as i32);
-        let scopes = field.scopes.get_or_insert_default();
-        let scope = scopes.key(self.agents.agents[agent].seat);
+        let scope = field.scopes.key(self.agents.agents[agent].seat);
         if *scope == f64::INFINITY || key.is_some_and(|key| key <= *scope) {
             return Ok(false);
         }
@@ -145,14 +141,8 @@ impl<'p> Engine<'p, '_> {
         let bounds = self.box_of(field, agent, 0, &rooms);
         let Some(number) = field.number(&self.agents, agent, 0) else { return Ok(false) };
         field.grid.change(number, &bounds);
-        for other in field.grid.around(number) {
-            for pair in field.pairs(&self.agents, number.min(other), number.max(other)) {
-                if !self.has_pair(field, pair) {
-                    let new = self.enter(field, pair)?;
-                    self.introduce(new, &[], &mut Vec::new())?;
-                }
-            }
-        }
+        let wanted = self.pairs_around(field, &[number]);
+        self.enter_new(field, wanted, &[], &mut Vec::new())?;
         Ok(true)
     }
 
@@ -161,9 +151,7 @@ impl<'p> Engine<'p, '_> {
         let Whither::Nearest { range, .. } = &update.target else { return (Vec::new(), f64::INFINITY) };
         let fields = std::mem::take(&mut self.neighbours.fields);
         let field = fields.iter().find(|field| {
-            field.scopes.is_some()
-                && std::ptr::eq(self.nearest_of(field).update, update)
-                && self.is_placed(field)
+            field.is_link && std::ptr::eq(self.nearest_of(field).update, update) && self.is_placed(field)
         });
         let found = field.map(|field| self.among_in(field, agent, tries));
         self.neighbours.fields = fields;
@@ -198,7 +186,7 @@ impl<'p> Engine<'p, '_> {
     fn place_of(&mut self, field: &Field, agent: usize, side: usize) -> Way {
         self.present.make(&self.agents, &[agent], Depth::States);
         let (states, aux) = (self.present.states(agent), &self.agents.agents[agent].aux);
-        let at = |near: &Near| match if side == 0 { near.own } else { near.other } {
+        let at = |near: &Near| match near.entry(side) {
             Entry::State(k) => Interval::point(states[k]),
             Entry::Aux(column) => Interval::point(aux[column]),
         };
@@ -208,7 +196,7 @@ impl<'p> Engine<'p, '_> {
     /// Before the first lists are made: fields of links say where everybody is.
     pub fn place_all(&mut self) {
         let mut fields = std::mem::take(&mut self.neighbours.fields);
-        for field in fields.iter_mut().filter(|field| field.scopes.is_some()) {
+        for field in fields.iter_mut().filter(|field| field.is_link) {
             let n = self.ranges_of(field).len();
             field.seats = field.seats_of(&self.agents);
             let mut boxes = vec![NOWHERE; n * field.seats[0]];
@@ -230,7 +218,7 @@ impl<'p> Engine<'p, '_> {
     pub fn place_anew(&mut self, agents: impl Iterator<Item = usize>) {
         let agents: Vec<usize> = agents.collect();
         let mut fields = std::mem::take(&mut self.neighbours.fields);
-        for field in fields.iter_mut().filter(|field| field.scopes.is_some()) {
+        for field in fields.iter_mut().filter(|field| field.is_link) {
             if !self.is_placed(field) {
                 continue;
             }
@@ -238,9 +226,9 @@ impl<'p> Engine<'p, '_> {
                 let Some(number) = field.number(&self.agents, agent, 1) else { continue };
                 let place = self.place_of(field, agent, 1);
                 let known = field.grid.get(number);
-                if place.iter().zip(known).any(|(place, known)| place.lo < known.lo || known.hi < place.hi) {
+                if !known.iter().zip(&place).all(|(known, &place)| known.encloses(place)) {
                     field.grid.change(number, &place);
-                    field.scopes.get_or_insert_default().changed.push(number);
+                    field.scopes.changed.push(number);
                 }
             }
         }

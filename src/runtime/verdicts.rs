@@ -1,7 +1,7 @@
 //! What is known of the properties of a run so far, and what they come to.
 
 use crate::base::Span;
-use crate::codegen::program::{ClaimKind, ClaimSystem, Formula, Program, Property};
+use crate::codegen::program::{ClaimKind, ClaimSystem, Condition, Formula, Program, Property};
 use crate::runtime::guards::{Guards, Origin};
 use crate::runtime::lookout::Lookout;
 use crate::runtime::margins::{Margins, Spot, When};
@@ -67,7 +67,7 @@ pub enum Watched {
         /// The extreme so far.
         found: Option<Found>,
         /// Who may come to decide it, if the condition is a quantifier that has this extreme.
-        lookout: Lookout,
+        lookout: Option<Lookout>,
     },
     /// A goal within a window, and a condition before.
     Until {
@@ -193,19 +193,24 @@ impl<'p> Monitors<'p> {
         };
         let properties = program.properties();
         let instances = if properties.is_empty() { 0 } else { guards.instances.len() as u32 };
-        let watched = |property: &'p Property| (property, watched(&property.formula));
-        Self {
-            properties: properties.iter().map(watched).collect(),
-            conditions: (0..instances).filter_map(of_property).collect(),
-            done: 0.0,
-        }
+        let conditions: Vec<(u32, &ClaimSystem)> = (0..instances).filter_map(of_property).collect();
+        let watched = |property: &'p Property| {
+            let mut watched = watched(&property.formula);
+            if let Watched::Extreme { extreme, condition, lookout, .. } = &mut watched {
+                *lookout = lookout_for(guards, conditions[*condition], *extreme);
+            }
+            (property, watched)
+        };
+        Self { properties: properties.iter().map(watched).collect(), conditions, done: 0.0 }
     }
 
     /// Something that may be read of these agents was written, or they are new.
-    pub fn doubt(&mut self, agents: &[usize]) {
+    pub fn doubt(&mut self, agents: &[usize], ty_of: impl Fn(usize) -> usize) {
         for (_, watched) in &mut self.properties {
-            if let Watched::Extreme { lookout, .. } = watched {
-                agents.iter().for_each(|&agent| lookout.doubt(agent));
+            if let Watched::Extreme { lookout: Some(lookout), .. } = watched {
+                let ty = lookout.ty;
+                let members = agents.iter().filter(|&&agent| ty_of(agent) == ty);
+                members.for_each(|&member| lookout.doubt(member));
             }
         }
     }
@@ -246,7 +251,25 @@ fn over(operators: Vec<(Extreme, [f64; 2])>, condition: usize) -> Watched {
 }
 
 fn extreme(extreme: Extreme, condition: usize, window: [f64; 2]) -> Watched {
-    Watched::Extreme { extreme, condition, window, found: None, lookout: Lookout::default() }
+    Watched::Extreme { extreme, condition, window, found: None, lookout: None }
+}
+
+/// For whom to look out where a condition is a quantifier that has over its members the extreme that is looked for over time: its
+/// body reads nobody but whom it binds and whom links lead to from there.
+fn lookout_for(
+    guards: &Guards<'_>,
+    (instance, claim): (u32, &ClaimSystem),
+    extreme: Extreme,
+) -> Option<Lookout> {
+    let (picked, quantified) = match &claim.violation.condition {
+        Condition::Forall(quantified) => (Extreme::Least, quantified),
+        Condition::Exists(quantified) => (Extreme::Greatest, quantified),
+        _ => return None,
+    };
+    let is_plain = guards.definition(instance).folds.is_empty()
+        && claim.violation.n_rising == 0
+        && !quantified.body.quantifies();
+    (picked == extreme && is_plain).then(|| Lookout::new(quantified.ty))
 }
 
 /// Operators, outermost first, over a condition until another one.

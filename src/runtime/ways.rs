@@ -3,7 +3,6 @@
 //! Boxes of those who follow others rest on the boxes of these: whoever leaves its box takes its followers with it.
 
 use rustc_hash::FxHashSet;
-use smallvec::SmallVec;
 
 use crate::math::Interval;
 use crate::runtime::engine::Engine;
@@ -14,6 +13,9 @@ impl Engine<'_, '_> {
     pub fn way(&mut self, agent: usize) -> Way {
         if let Some(Some(way)) = self.neighbours.ways.get(agent) {
             return way.clone();
+        }
+        if !self.has_company(agent) {
+            return self.way_alone(agent);
         }
         let mut ways = std::mem::take(&mut self.neighbours.ways);
         ways.resize(self.agents.len(), None);
@@ -39,14 +41,12 @@ impl Engine<'_, '_> {
     /// The way of an agent, by those whom it follows.
     fn lay(&mut self, agent: usize, ways: &mut [Option<Way>]) {
         let span = (self.present.time, self.neighbours.until);
-        let (agents, groups) = (&self.agents, &self.groups.groups);
-        let mut states = SmallVec::new();
-        let group = &groups[agents.agents[agent].group];
+        let group = &self.groups.groups[self.agents.agents[agent].group];
         if group.leaders.is_empty() {
-            self.reaches.states(agents, groups, &mut self.enclosures, agent, span, &mut states);
-            ways[agent] = Some(states.into_iter().collect());
+            ways[agent] = Some(self.way_alone(agent));
             return;
         }
+        let agents = &self.agents;
         let leader = |agent: usize| ways[agent].as_deref();
         let boxes = self.enclosures.led(agents, group, &leader, span);
         let mut boxes = boxes.into_iter().flatten();
@@ -54,6 +54,21 @@ impl Engine<'_, '_> {
             let n = agents.agents[member].states.len();
             ways[member] = Some((0..n).map(|_| boxes.next().unwrap_or(Interval::WHOLE)).collect());
         }
+    }
+
+    /// The way of an agent whose group follows nobody.
+    fn way_alone(&mut self, agent: usize) -> Way {
+        let span = (self.present.time, self.neighbours.until);
+        let (agents, groups) = (&self.agents, &self.groups.groups);
+        let mut states = Way::new();
+        self.reaches.states(agents, groups, &mut self.enclosures, agent, span, &mut states);
+        states
+    }
+
+    /// Whether an agent follows others, or may be followed: then its way is kept.
+    fn has_company(&self, agent: usize) -> bool {
+        let follows = !self.groups.groups[self.agents.agents[agent].group].leaders.is_empty();
+        follows || self.agents.may_be_followed(agent)
     }
 
     /// The ways of some agents lead somewhere else from the present instant on. Returns them with those who follow them out of
@@ -65,13 +80,16 @@ impl Engine<'_, '_> {
         let mut before: Vec<Option<Way>> = before.collect();
         let mut next = 0;
         while next < all.len() {
-            let (agent, new) = (all[next], self.way(all[next]));
-            let is_within = before[next].as_ref().is_some_and(|old| {
-                old.len() == new.len()
-                    && old.iter().zip(&new).all(|(old, new)| old.lo <= new.lo && new.hi <= old.hi)
-            });
+            let (agent, old) = (all[next], before[next].take());
             next += 1;
-            if is_within {
+            if !self.agents.may_be_followed(agent) {
+                continue;
+            }
+            let new = self.way(agent);
+            let is_within = |old: Way| {
+                old.len() == new.len() && old.iter().zip(&new).all(|(old, &new)| old.encloses(new))
+            };
+            if old.is_some_and(is_within) {
                 continue;
             }
             for follower in self.agents.followers(agent) {

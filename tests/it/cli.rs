@@ -383,26 +383,29 @@ fn a_reader_that_goes_away_is_no_error() {
     }
 }
 
+/// Runs a command until there is something in a file, and interrupts it.
+#[cfg(unix)]
+fn interrupted(folder: &TempDir, words: &[&str], file: &str) -> Done {
+    use std::time::{Duration, Instant};
+    let child = command(folder.path(), words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let begun = Instant::now();
+    let path = folder.path().join(file);
+    while fs::metadata(&path).map_or(0, |file| file.len()) == 0 && begun.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    done(child.wait_with_output().unwrap())
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interruption_ends_with_130_and_keeps_what_was_computed() {
-    use std::time::{Duration, Instant};
     let text = BALL
         .replace("until 1 ", "until 1e9 ")
         .replace("bounce: when x <= 0 { v := -0.8*v", "bounce: when x <= 0 { v := -v");
     let folder = folder(&[("ball.hy", &text)]);
-    let child = command(folder.path(), &["run", "ball.hy", "--stats", "s.json", "--final", "f.csv"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let begun = Instant::now();
-    let log = folder.path().join("events.csv");
-    while fs::metadata(&log).map_or(0, |file| file.len()) == 0 && begun.elapsed() < Duration::from_secs(60) {
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    let done = done(child.wait_with_output().unwrap());
+    let words = ["run", "ball.hy", "--stats", "s.json", "--final", "f.csv"];
+    let done = interrupted(&folder, &words, "events.csv");
     expect(&done, 130, &["interrupted at t = "]);
     assert_eq!(json(&read(&folder, "s.json"))["end"]["kind"], "interrupted");
     assert_eq!(read(&folder, "f.csv").lines().count(), 4);
@@ -582,23 +585,10 @@ fn a_step_size_is_no_setting_and_a_wrong_name_lists_all() {
 #[cfg(unix)]
 #[test]
 fn an_interruption_tells_up_to_when_the_tables_are_complete() {
-    use std::time::{Duration, Instant};
     let text = "agent A { state x = 0  flow { x' = 1 } }  system { a = A() }
                 run { until 100  record a every 1e-7 to \"a.csv\" }";
     let folder = folder(&[("a.hy", text)]);
-    let child = command(folder.path(), &["run", "a.hy", "--final", "f.csv"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let begun = Instant::now();
-    let table = folder.path().join("a.csv");
-    while fs::metadata(&table).map_or(0, |file| file.len()) == 0 && begun.elapsed() < Duration::from_secs(60)
-    {
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    let done = done(child.wait_with_output().unwrap());
+    let done = interrupted(&folder, &["run", "a.hy", "--final", "f.csv"], "a.csv");
     expect(&done, 130, &["interrupted at t = "]);
     let value = |name: &str, column: usize| -> f64 {
         let text = read(&folder, name);

@@ -3,6 +3,7 @@
 
 mod forms;
 mod crowd;
+mod arena;
 mod lookouts;
 mod mates;
 mod written;

@@ -15,7 +15,7 @@ use crate::calculus::lint::effects::{Effect, before, effect, guard, nodes, plain
 use crate::calculus::lint::truth::{Truth, truth};
 use crate::calculus::reader::Reader;
 use crate::calculus::system::{
-    ActionStep, Condition, Entry, Frame, FunctionId, Guard, Relation, System, TransitionSystem,
+    ActionStep, Condition, Frame, FunctionId, Guard, Relation, System, TransitionSystem,
 };
 use crate::math::Interval;
 
@@ -96,11 +96,7 @@ impl<'s> Kept<'s> {
         let mut written = FxHashMap::default();
         for step in &effect.own.steps {
             let ActionStep::Assign { slot: 0, target, value, .. } = step else { continue };
-            let leaf = match target {
-                Entry::State(column) => Node::State { slot: 0, column: *column as u32 },
-                Entry::Aux(column) => Node::Aux { slot: 0, column: *column as u32 },
-            };
-            written.insert(leaf, reader.function(*value));
+            written.insert(target.leaf(0), reader.function(*value));
         }
         reader.read_as(frame, written.clone(), None);
         Self { guard, before, written, frame, after: reader }

@@ -101,6 +101,12 @@ impl Interval {
         (self.lo <= x && x <= self.hi) || (x.is_nan() && self.is_whole())
     }
 
+    /// Whether it contains another.
+    #[inline]
+    pub fn encloses(self, other: Self) -> bool {
+        self.lo <= other.lo && other.hi <= self.hi
+    }
+
     /// Whether zero is a member.
     #[inline]
     pub fn contains_zero(self) -> bool {

@@ -3,31 +3,20 @@
 
 use std::fmt::Write as _;
 
+use super::arena::{Crowd, NAMES, jump, walls};
 use crate::differential::dice::Dice;
 
 /// The model of this number.
 pub fn model(seed: u64) -> String {
-    let mut dice = Dice::new(seed.wrapping_add(9_000_000));
-    let n_types = 1 + dice.below(2);
-    let half = 4.0 + dice.below(4) as f64;
-    let mut text = "param nudge = 1\n".to_string();
-    for ty in 0..n_types {
-        agent(&mut dice, ty, n_types, half, &mut text);
-    }
-    let _ = writeln!(text, "system {{");
-    for ty in 0..n_types {
-        for k in 0..8 + dice.below(12) {
-            let (x, y) = (dice.number(-half, half), dice.number(-half, half));
-            let (u, w) = (dice.signed(0.1, 2.0), dice.signed(0.2, 3.0));
-            let name = NAMES[ty];
-            let _ = writeln!(text, "  {}{k} = {name}(x = {x}, y = {y}, u = {u}, w = {w})", ["p", "q"][ty]);
-        }
-    }
-    let _ = writeln!(text, "}}\nrun {{ until {} }}", dice.number(1.0, 3.0));
-    text
+    let crowd = Crowd { half: 4.0, members: (8, 12), until: 3.0, agent, given };
+    crowd.model(Dice::new(seed.wrapping_add(9_000_000)))
 }
 
-const NAMES: [&str; 2] = ["Pod", "Qit"];
+/// Speed, rate of turning.
+fn given(dice: &mut Dice) -> String {
+    let (u, w) = (dice.signed(0.1, 2.0), dice.signed(0.2, 3.0));
+    format!("u = {u}, w = {w}")
+}
 
 fn agent(dice: &mut Dice, ty: usize, n_types: usize, half: f64, text: &mut String) {
     let name = NAMES[ty];
@@ -36,15 +25,9 @@ fn agent(dice: &mut Dice, ty: usize, n_types: usize, half: f64, text: &mut Strin
     let x = *dice.pick(&["u*cos(th)", "u", "u + cos(2*time + th)", "u - 0.2*x"]);
     let y = *dice.pick(&["u*sin(th)", "0.5*w", "0.5*w*sin(th)"]);
     let _ = writeln!(text, "  flow {{ x' = nudge*({x})  y' = nudge*({y})  th' = w }}");
-    let _ = writeln!(text, "  right: when x >= {half} {{ x := x - 2*{half} + 0.1 }}");
-    let _ = writeln!(text, "  left: when x <= -{half} {{ x := x + 2*{half} - 0.1 }}");
+    walls(half, text);
     match dice.below(4) {
-        0 => {
-            let _ = writeln!(
-                text,
-                "  jump: every 0.4 + 0.2*abs(w) {{ y := mod(y + 3.7*w + {half}, 2*{half}) - {half} }}"
-            );
-        }
+        0 => jump(half, text),
         1 => {
             let _ = writeln!(text, "  sway: every {} {{ u := -0.9*u  k := k + 1 }}", dice.number(0.3, 1.5));
         }

@@ -3,33 +3,20 @@
 
 use std::fmt::Write as _;
 
+use super::arena::{Crowd, NAMES, jump, walls};
 use crate::differential::dice::Dice;
 
 /// The model of this number.
 pub fn model(seed: u64) -> String {
-    let mut dice = Dice::new(seed.wrapping_add(7_000_000));
-    let n_types = 1 + dice.below(2);
-    let half = 3.0 + dice.below(4) as f64;
-    let mut text = "param nudge = 1\n".to_string();
-    for ty in 0..n_types {
-        agent(&mut dice, ty, n_types, half, &mut text);
-    }
-    let _ = writeln!(text, "system {{");
-    for ty in 0..n_types {
-        for k in 0..6 + dice.below(10) {
-            let (x, y) = (dice.number(-half, half), dice.number(-half, half));
-            let (u, w, lane) = (dice.signed(0.1, 1.5), dice.signed(0.2, 2.0), dice.below(3));
-            let name = NAMES[ty];
-            let name_of = ["p", "q"][ty];
-            let _ =
-                writeln!(text, "  {name_of}{k} = {name}(x = {x}, y = {y}, u = {u}, w = {w}, lane = {lane})");
-        }
-    }
-    let _ = writeln!(text, "}}\nrun {{ until {} }}", dice.number(1.0, 4.0));
-    text
+    let crowd = Crowd { half: 3.0, members: (6, 10), until: 4.0, agent, given };
+    crowd.model(Dice::new(seed.wrapping_add(7_000_000)))
 }
 
-const NAMES: [&str; 2] = ["Pod", "Qit"];
+/// Speed, rate of turning, lane.
+fn given(dice: &mut Dice) -> String {
+    let (u, w, lane) = (dice.signed(0.1, 1.5), dice.signed(0.2, 2.0), dice.below(3));
+    format!("u = {u}, w = {w}, lane = {lane}")
+}
 
 fn agent(dice: &mut Dice, ty: usize, n_types: usize, half: f64, text: &mut String) {
     let name = NAMES[ty];
@@ -54,20 +41,14 @@ fn agent(dice: &mut Dice, ty: usize, n_types: usize, half: f64, text: &mut Strin
     let follow = *dice.pick(&["u + 0.5*away", "0.8*away", "if away > 1 then 2*u else u + 0.1*away", "u"]);
     let y = *dice.pick(&["u*sin(th)", "0.5*w", "0.5*w*sin(th)"]);
     let _ = writeln!(text, "  flow {{ y' = nudge*({y})  th' = w }}");
-    let _ = writeln!(text, "  right: when x >= {half} {{ x := x - 2*{half} + 0.1 }}");
-    let _ = writeln!(text, "  left: when x <= -{half} {{ x := x + 2*{half} - 0.1 }}");
+    walls(half, text);
     let (period, first) = (dice.number(0.2, 0.7), dice.number(0.1, 0.9));
     let _ = writeln!(
         text,
         "  looks: every {period} {{ seen := if mate then mate.u else 9  met := met + (if mate then 1 else 0) }}"
     );
     match dice.below(4) {
-        0 => {
-            let _ = writeln!(
-                text,
-                "  jump: every 0.4 + 0.2*abs(w) {{ y := mod(y + 3.7*w + {half}, 2*{half}) - {half} }}"
-            );
-        }
+        0 => jump(half, text),
         1 => {
             let _ = writeln!(text, "  change: every {first} {{ lane := mod(lane + 1, 3) }}");
         }
