@@ -12,7 +12,7 @@ use crate::calculus::frame::{AgentRef, Env, EnvId, Scope, Value};
 use crate::calculus::graph::{Node, NodeId};
 use crate::calculus::system::{Layout, Slot};
 use crate::math::Op;
-use crate::model::ir::{Aggregate, ExprId, ExprKind, FunctionId, ModeId, Quantifier, Type, TypeId};
+use crate::model::ir::{Aggregate, ExprId, ExprKind, FunctionId, ModeId, Quantifier, Set, Type, TypeId};
 
 /// Why an expression is not lowered.
 #[derive(Debug)]
@@ -197,7 +197,7 @@ fn over_members(draft: &mut Draft, scope: &mut Scope, env: EnvId, id: ExprId) ->
     let links = model.types[owner].sets.iter().find(|found| found.ty == set && found.block == block);
     let nothing = draft.graph.number(nothing);
     let mut folded = nothing;
-    for link in links.map_or(0..0, |set| set.first..set.first + set.count) {
+    for link in links.map_or(0..0, Set::links) {
         let member = AgentRef::link(0, link);
         let slot = scope.slot(model, member, span)?.expect("a link has a slot");
         let inner = scope.bound_env(env, binder, slot);

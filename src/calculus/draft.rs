@@ -11,9 +11,9 @@ use crate::calculus::error::Error;
 use crate::calculus::graph::{Graph, NodeId};
 use crate::calculus::system::{
     AgentSystem, Column, EventSystem, Function, FunctionId, Initials, InteractionSystem, Layout, LinkSystem,
-    System,
+    SetSystem, System,
 };
-use crate::model::ir::{AgentType, Event, Link, Model, Trigger, Type, Variable};
+use crate::model::ir::{AgentType, Event, Link, Model, Set, Trigger, Type, Variable};
 
 /// See the head of this file.
 pub struct Draft<'m> {
@@ -126,6 +126,12 @@ fn link(link: &Link) -> LinkSystem {
     LinkSystem { name: link.name.clone(), required: link.required, updates: Vec::new() }
 }
 
+fn set(model: &Model, set: &Set) -> SetSystem {
+    let memberships = &model.types[set.ty].memberships;
+    let belongs = memberships.iter().find(|(block, _)| Some(*block) == set.block).map(|&(_, param)| param);
+    SetSystem { ty: set.ty.index(), belongs, count: set.count, links: set.links() }
+}
+
 fn columns(model: &Model, ty: &AgentType) -> AgentSystem {
     let column = |v: &Variable| Column { name: v.name.clone(), scale: v.scale, boolean: v.ty == Type::Bool };
     AgentSystem {
@@ -144,7 +150,7 @@ fn columns(model: &Model, ty: &AgentType) -> AgentSystem {
         params: ty.params.iter().map(column).collect(),
         discretes: ty.discretes.iter().map(column).collect(),
         links: ty.links.iter().map(link).collect(),
-        sets: ty.sets.iter().map(|set| (set.ty.index(), set.count)).collect(),
+        sets: ty.sets.iter().map(|found| set(model, found)).collect(),
         hazards: ty.rates().map(|transition| transition.label.clone()).collect(),
         events: ty.events.iter().map(event).collect(),
         streams: Vec::new(),

@@ -9,6 +9,7 @@
 //! aggregate (`sum o in Car: o.x`) has a slot too, as if it were an agent with one column: see [`Fold`].
 //! **Columns.** An agent is two rows of numbers: its states, and its auxiliary columns ([`Layout`]).
 
+use std::ops::Range as Indices;
 use std::sync::Arc;
 
 use crate::base::{Arena, Idx, Span};
@@ -129,8 +130,8 @@ pub struct AgentSystem {
     pub discretes: Vec<Column>,
     /// The links; those to members of sets come last.
     pub links: Vec<LinkSystem>,
-    /// The sets that its flows read: the type, and how many there are at t = 0.
-    pub sets: Vec<(usize, usize)>,
+    /// The sets that its flows read.
+    pub sets: Vec<SetSystem>,
     /// The labels of its `rate` transitions. What is left of their hazards are states behind the others, which no output shows.
     pub hazards: Vec<String>,
     /// Its events.
@@ -150,6 +151,19 @@ pub struct AgentSystem {
     pub regions: Vec<usize>,
     /// Transitions of all modes in order of declaration.
     pub transitions: Vec<TransitionSystem>,
+}
+
+/// A set that a flow reads, member by member.
+#[derive(Clone, Debug)]
+pub struct SetSystem {
+    /// The type of its members.
+    pub ty: usize,
+    /// The parameter that says who of the type belongs to it; none: all do.
+    pub belongs: Option<usize>,
+    /// How many there are at t = 0.
+    pub count: usize,
+    /// The links to its members, and those that are none until somebody joins.
+    pub links: Indices<usize>,
 }
 
 /// A link of an agent type.

@@ -125,7 +125,7 @@ fn interactions(system: &System) -> impl Iterator<Item = (&str, bool)> {
 /// Each type whose flow reads a set, what that is a set of, and its size (rule 13).
 fn sets(system: &System) -> impl Iterator<Item = (&str, &str, usize)> {
     system.types.iter().flat_map(|ty| {
-        ty.sets.iter().map(|&(set, count)| (ty.name.as_str(), system.types[set].name.as_str(), count))
+        ty.sets.iter().map(|set| (ty.name.as_str(), system.types[set.ty].name.as_str(), set.count))
     })
 }
 

@@ -25,6 +25,7 @@ impl Limits {
                 "max_values" => model.values_max = size,
                 "max_states" => model.states_max = size,
                 "max_modes" => model.modes_max = size,
+                "max_joining" => model.joining_max = size,
                 "max_table_rows" => model.table_rows_max = size,
                 "max_configurations" => model.configurations_max = size,
                 "max_cells" => model.cells_max = size,
@@ -34,11 +35,13 @@ impl Limits {
                 "max_microsteps" => run.microsteps_max = small,
                 "zeno_events" => run.zeno_events = small,
                 "max_steps" => run.steps_max = *value,
+                "max_generations" => run.generations_max = small,
                 "max_guards" => run.guards_max = size,
                 "max_pieces" => run.pieces_max = small,
                 _ => {
-                    let of_model = "max_agents, max_values, max_states, max_modes, max_configurations, max_table_rows, max_cells, max_samples, max_evaluations, max_operations";
-                    let of_run = "max_microsteps, zeno_events, max_steps, max_guards, max_pieces";
+                    let of_model = "max_agents, max_values, max_states, max_modes, max_configurations, max_joining, max_table_rows, max_cells, max_samples, max_evaluations, max_operations";
+                    let of_run =
+                        "max_microsteps, zeno_events, max_steps, max_generations, max_guards, max_pieces";
                     return Err(format!("there is no limit `{name}`; there are {of_model}, {of_run}"));
                 }
             }

@@ -1,7 +1,7 @@
 //! The command line: the only floor that reads files, prints, or ends the process.
 //!
 //! In: the words that the user typed. Out: files, text, and an exit code ([`Exit`]) that scripts can rest on.
-//! Promised: an option that is not built yet is refused with its name, never ignored; a closed pipe is not an error;
+//! Promised: no option is ever ignored; a closed pipe is not an error;
 //! what a run has computed is on disk before the process ends.
 
 mod arguments;
@@ -44,7 +44,7 @@ pub enum Exit {
     Fine = 0,
     /// The model has errors.
     ModelErrors = 1,
-    /// Wrong usage, a file that cannot be read or written, or something that is not built yet.
+    /// Wrong usage, or a file that cannot be read or written.
     Usage = 2,
     /// The run stopped in error; its outputs up to then are complete.
     RunError = 3,

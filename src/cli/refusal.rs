@@ -1,21 +1,10 @@
-//! What is refused before anything is done: options that are not built yet, each by its name, and a run without end.
+//! What is refused before anything is done: what an algorithm cannot run, and a run without end.
 
 use super::Refused;
-use super::arguments::EngineArguments;
 use crate::codegen::program::Program;
 use crate::model::Model;
 use crate::model::ir::Action;
 use crate::runtime::{Algorithm, published_take};
-
-/// Refuses what the engine cannot do yet.
-pub(super) fn refuse_engine(arguments: &EngineArguments) -> Result<(), Refused> {
-    match arguments.integrator {
-        Some(integrator) if !integrator.is_built() => {
-            Err(not_built(&format!("--integrator {}", integrator.name()), "tsit5"))
-        }
-        Some(_) | None => Ok(()),
-    }
-}
 
 /// Refuses what the published algorithms cannot run.
 pub(super) fn refuse_aggregates(algorithm: Algorithm, program: &Program) -> Result<(), Refused> {
@@ -33,10 +22,6 @@ pub(super) fn refuse_aggregates(algorithm: Algorithm, program: &Program) -> Resu
         "`{name}` does not take agents that are created or destroyed, links with an expression, nor guards with count, sum, min or max over agents that come and go while states flow (their \
          `where` compares what flows): such a guard jumps; there is `masim`"
     ))
-}
-
-fn not_built(option: &str, instead: &str) -> Refused {
-    format!("`{option}` is not built yet; there is `{instead}`")
 }
 
 /// Refuses a model that neither `until` nor a `stop` ever ends.

@@ -10,7 +10,7 @@ use super::input::{Loaded, load, name_of};
 use super::limits::Limits;
 use super::outputs::{OutputFiles, kind_of};
 use super::progress::ProgressLine;
-use super::refusal::{refuse_aggregates, refuse_endless, refuse_engine};
+use super::refusal::{refuse_aggregates, refuse_endless};
 use super::sinks::Sinks;
 use super::terminal::{complain, say, say_aside, tell};
 use super::warnings::Levels;
@@ -36,7 +36,6 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// Compiles, simulates, writes.
 pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
-    refuse_engine(&arguments.engine)?;
     let limits = Limits::new(&arguments.engine.limits)?;
     let levels = Levels::new(&arguments.allow, &[])?;
     let begun = Instant::now();

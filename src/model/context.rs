@@ -342,11 +342,6 @@ impl<'a> Context<'a> {
         self.diagnostics.push(error.into());
     }
 
-    /// Refuses a construct that is not built yet; `what` in the plural.
-    pub fn refuse(&mut self, what: impl Into<String>, span: Span) {
-        self.report(super::error::Unsupported { what: what.into(), span });
-    }
-
     /// Whether anything is wrong so far.
     pub fn has_errors(&self) -> bool {
         self.diagnostics.iter().any(Diagnostic::is_error)

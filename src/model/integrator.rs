@@ -26,17 +26,6 @@ impl Integrator {
         ("stiff", Integrator::Stiff),
     ];
 
-    /// Whether it is built.
-    pub fn is_built(self) -> bool {
-        match self {
-            Integrator::Auto
-            | Integrator::Taylor
-            | Integrator::Tsit5
-            | Integrator::Adams
-            | Integrator::Stiff => true,
-        }
-    }
-
     /// The name that users give it.
     pub fn name(self) -> &'static str {
         let named = Self::NAMED.iter().find(|(_, integrator)| *integrator == self);

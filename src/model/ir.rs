@@ -356,6 +356,15 @@ pub struct Set {
     pub first: usize,
     /// How many there are at t = 0.
     pub count: usize,
+    /// How many more there may come to be: links behind the others, none at t = 0.
+    pub room: usize,
+}
+
+impl Set {
+    /// The links to its members.
+    pub fn links(&self) -> std::ops::Range<usize> {
+        self.first..self.first + self.count + self.room
+    }
 }
 
 /// `event name(params)`.

@@ -15,6 +15,8 @@ pub struct Limits {
     pub modes_max: usize,
     /// `max_configurations`: combinations of modes of the regions of one agent type.
     pub configurations_max: usize,
+    /// `max_joining`: agents by which a set that a flow reads may grow.
+    pub joining_max: usize,
     /// `max_table_rows`: rows of a file that a `table` reads.
     pub table_rows_max: usize,
     /// `max_cells`: cells of one sample, agents by columns of a `record`.
@@ -35,6 +37,7 @@ impl Default for Limits {
             states_max: 100_000,
             modes_max: 100_000,
             configurations_max: 1_000,
+            joining_max: 32,
             table_rows_max: 1_000,
             cells_max: 10_000_000,
             samples_max: 1_000_000_000_000,

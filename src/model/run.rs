@@ -6,7 +6,7 @@ use super::Settings;
 use super::context::{Context, Home, Scope};
 use super::dimension::Dimension;
 use super::error::{FileError, LimitError, RunError};
-use super::ir::{Integrator, Record};
+use super::ir::Record;
 use super::machinery::Named;
 use super::suggest::closest;
 use super::types::{Slot, Ty};
@@ -162,7 +162,7 @@ impl<'a> Context<'a> {
                 match name.text.as_str() {
                     "integrator" => {
                         if let Some(integrator) = self.named(name, value) {
-                            self.use_integrator(integrator, value.span);
+                            self.model.run.integrator = integrator;
                         }
                     }
                     "algorithm" => self.model.run.machinery.algorithm = self.named(name, value),
@@ -253,14 +253,6 @@ impl<'a> Context<'a> {
         named
     }
 
-    fn use_integrator(&mut self, integrator: Integrator, span: Span) {
-        if integrator.is_built() {
-            self.model.run.integrator = integrator;
-        } else {
-            self.refuse(format!("the integrator `{}`", integrator.name()), span);
-        }
-    }
-
     fn unknown_setting(&mut self, name: &ast::Name) {
         let similar = closest(&name.text, KNOWN);
         self.report(RunError::Unknown { name: name.text.clone(), span: name.span, similar });
@@ -301,7 +293,7 @@ impl<'a> Context<'a> {
             self.model.run.seed = seed;
         }
         if let Some(integrator) = settings.integrator {
-            self.use_integrator(integrator, Span::default());
+            self.model.run.integrator = integrator;
         }
     }
 

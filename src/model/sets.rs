@@ -1,7 +1,7 @@
 //! Sets that flows read (rule 13): `sum o in other Car: sin(o.th - th)` in a flow couples its owner with every car.
 //!
 //! In: a model with its population. Out: the same, where each agent whose flow ranges over a type has a link to every agent of
-//! it. Nothing in the text names these links, and nothing but death changes them; by them the flow is a formula over agents
+//! it. Nothing in the text names these links, and nothing but births and deaths changes them; by them the flow is a formula over agents
 //! like any other, with its derivatives, its kinks and its couplings.
 
 use rustc_hash::FxHashSet;
@@ -20,12 +20,10 @@ pub(super) fn fill(context: &mut Context) {
     let created: FxHashSet<TypeId> = context.model.creations().iter().map(|create| create.ty).collect();
     for ty in context.model.types.indices().collect::<Vec<_>>() {
         for (set, span) in sets_read(context, ty) {
+            // Who is created belongs to no name of `system`.
             let grows = set.block.is_none() && created.contains(&set.ty);
-            if grows || created.contains(&ty) {
-                context.refuse("quantifiers in flows of or over agents that are created", span);
-            } else {
-                link_all(context, ty, set, span);
-            }
+            let room = if grows { context.model.limits.joining_max } else { 0 };
+            link_all(context, ty, set, room, span);
         }
     }
 }
@@ -63,8 +61,8 @@ fn sets_read(context: &Context, ty: TypeId) -> Vec<(Named, Span)> {
     found
 }
 
-/// Gives every agent of a type a link to each of a set.
-fn link_all(context: &mut Context, ty: TypeId, set: Named, span: Span) {
+/// Gives every agent of a type a link to each of a set, and room for those who come to be.
+fn link_all(context: &mut Context, ty: TypeId, set: Named, room: usize, span: Span) {
     let Named { ty: of, block } = set;
     let model = &mut context.model;
     let agents = &model.population.agents;
@@ -73,12 +71,15 @@ fn link_all(context: &mut Context, ty: TypeId, set: Named, span: Span) {
         None => 0..agents.len(),
     };
     let members: Vec<usize> = within.filter(|&number| agents[number].ty == of).collect();
-    let names: Vec<String> = members.iter().map(|&number| model.population.agent_name(number)).collect();
+    let count = members.len();
+    let present = members.iter().map(|&number| model.population.agent_name(number));
+    let names: Vec<String> = present.chain((count..count + room).map(|k| format!("member {k}"))).collect();
     let links = names.into_iter().map(|name| Link { name, ty: of, required: false, cases: Vec::new(), span });
     let owner = &mut model.types[ty];
-    owner.sets.push(Set { ty: of, block, first: owner.links.len(), count: members.len() });
+    owner.sets.push(Set { ty: of, block, first: owner.links.len(), count, room });
     owner.links.extend(links);
     for agent in model.population.agents.iter_mut().filter(|agent| agent.ty == ty) {
         agent.links.extend(members.iter().map(|&member| Some(member)));
+        agent.links.extend(std::iter::repeat_n(None, room));
     }
 }

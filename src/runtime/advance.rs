@@ -13,7 +13,7 @@ use crate::runtime::detect::{AtomCurve, CurveRows};
 use crate::runtime::flow::{GroupFlow, Witness};
 use crate::runtime::groups::{Group, KinkHit};
 use crate::runtime::limits::Limits;
-use crate::runtime::population::{Agent, Agents, Slots};
+use crate::runtime::population::{ABSENT, Agent, Agents, Slots};
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::integrate::{Integrator, Stuck};
 use crate::runtime::solve::method::{Flow as _, Stretch};
@@ -568,6 +568,10 @@ fn kink_time(
         let reach = 2.0 * f64::EPSILON * until.abs();
         let known = Known { truth, closed, slack: 0.0, settled: false, grazed: false, reach };
         let mut curve = AtomCurve::new(agents, atom, slots, &[], curves);
+        // What is of nobody alone has no kink, however long the step.
+        if atom.slots.iter().any(|&slot| slots[slot] == ABSENT) && curve.jet(start)[0].is_nan() {
+            return None;
+        }
         let mut from = start;
         loop {
             match first_flip(&mut curve, from, until, known, pieces_max) {

@@ -16,6 +16,15 @@ pub enum Fate {
         /// The action.
         span: Span,
     },
+    /// `max_generations`.
+    Generations {
+        /// Who creates.
+        place: Place,
+        /// The limit.
+        limit: u32,
+        /// The transition.
+        span: Span,
+    },
     /// A variable would start with what is no number.
     StartNotFinite {
         /// Who creates.
@@ -51,6 +60,17 @@ pub enum Fate {
         /// The action.
         span: Span,
     },
+    /// `max_joining`.
+    SetFull {
+        /// Whose flow reads the set.
+        place: Place,
+        /// The type of its members.
+        members: String,
+        /// The limit.
+        limit: usize,
+        /// Who joins is created here.
+        span: Span,
+    },
     /// An agent that is to be destroyed is a parameter of one that lives on.
     Held {
         /// Who is to be destroyed.
@@ -81,6 +101,13 @@ impl Fate {
                      `--limit max_agents=N`",
                 )
             }
+            Fate::Generations { place, limit, span } => {
+                let title = format!("agents have created agents {limit} times in a row in one instant");
+                place.add_to(Diagnostic::error("HY0530", title).label(*span, "and once more here")).help(
+                    "does each create another, in no time? let the newborn wait, or raise the limit: \
+                     `--limit max_generations=N`",
+                )
+            }
             Fate::StartNotFinite { place, variable, value, blame, span } => {
                 let diagnostic =
                     Diagnostic::error("HY0531", format!("`{variable}` would start with {value}"))
@@ -101,6 +128,16 @@ impl Fate {
                 place
                     .add_to(diagnostic)
                     .help("a parameter of agent type is never none; what may be none is declared as a `link`")
+            }
+            Fate::SetFull { place, members, limit, span } => {
+                let reader = &place.agent;
+                let title = format!(
+                    "more than {limit} agents of `{members}` join the set that the flow of `{reader}` reads"
+                );
+                place.add_to(Diagnostic::error("HY0536", title).label(*span, "this would be one more")).help(
+                    "room is free again when one is destroyed; the formula of the flow has a term for each: \
+                     `--limit max_joining=N`",
+                )
             }
             Fate::Held { place, holder, parameter, span } => {
                 let agent = &place.agent;

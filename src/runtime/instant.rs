@@ -11,6 +11,7 @@ use crate::runtime::act::{Claimed, Effect, Written, claims};
 use crate::runtime::arm::Rule;
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Place, Reason, contested};
+use crate::runtime::fate::Fate;
 use crate::runtime::guards::{AtomState, Origin};
 use crate::runtime::observe::{Event, FalseAssert};
 use crate::runtime::population::Slots;
@@ -54,7 +55,7 @@ impl Engine<'_, '_> {
         let mut micro = 0;
         let mut touched_agents: BTreeSet<(usize, usize)> = BTreeSet::new();
         let mut concerned: Vec<u32> = candidates.iter().map(|candidate| candidate.instance).collect();
-        let mut births = 0;
+        let mut generations = 0;
         // The loop ends an interrupted run; until then an instant without an end must not go on.
         while !self.interrupted() {
             self.deliver();
@@ -74,9 +75,11 @@ impl Engine<'_, '_> {
             let written = self.fire(&chosen, micro, &mut touched_agents)?;
             touched_agents.extend(written.born.iter().map(|&agent| (self.agents.number(agent), agent)));
             let fired: Vec<u32> = chosen.iter().map(|ranked| ranked.candidate.instance).collect();
-            births = if written.born.is_empty() { 0 } else { births + 1 };
-            if births > self.limits.microsteps_max {
-                return Err(self.goes_round(fired[0]).into());
+            generations = if written.born.is_empty() { 0 } else { generations + 1 };
+            if generations > self.limits.generations_max {
+                let place = self.place(chosen[0].slots[0]);
+                let (limit, span) = (self.limits.generations_max, self.label(fired[0]).1);
+                return Err(Fate::Generations { place, limit, span }.into());
             }
             if self.notes.is_some() {
                 self.explain_writes(&written, &fired);

@@ -11,6 +11,8 @@ pub struct Limits {
     pub steps_max: u64,
     /// `max_agents`: agents at a time, counting those that die in an instant until its end.
     pub agents_max: usize,
+    /// `max_generations`: micro-steps of one instant, in a row, in which agents are created.
+    pub generations_max: u32,
     /// `max_guards`: guard instances over pairs (all pairs are listed).
     pub guards_max: usize,
     /// `max_pieces`: how many pieces of time one search for a root of one guard looks at. A step may take several searches.
@@ -24,6 +26,7 @@ impl Default for Limits {
             zeno_events: 100,
             steps_max: 10_000_000_000,
             agents_max: 10_000_000,
+            generations_max: 100_000,
             guards_max: 50_000_000,
             pieces_max: 10_000,
         }

@@ -11,7 +11,7 @@ use rustc_hash::FxHashSet;
 
 use crate::base::Span;
 use crate::codegen::kernel::AgentView;
-use crate::codegen::program::{Birth, Frame, Initials, Layout, Source, VarRef};
+use crate::codegen::program::{Birth, Frame, Initials, Layout, SetSystem, Source, VarRef};
 use crate::math::draw::Key;
 use crate::runtime::act::Written;
 use crate::runtime::ahead::Ahead;
@@ -140,12 +140,16 @@ impl Engine<'_, '_> {
     /// Makes and removes agents as a micro-step, and the entry actions of those made, want it.
     pub fn turn_over(&mut self, written: &mut Written) -> Result<(), Failure> {
         while !written.conceived.is_empty() {
-            let mut born = Vec::new();
-            for conceived in std::mem::take(&mut written.conceived) {
-                born.push(self.bear(&conceived)?);
+            let conceived = std::mem::take(&mut written.conceived);
+            let mut born = Vec::with_capacity(conceived.len());
+            for conceived in &conceived {
+                born.push(self.bear(conceived)?);
             }
             self.present.forget();
             self.place_anew(written.before.keys().chain(&written.born).chain(&born).copied());
+            for (&agent, conceived) in born.iter().zip(&conceived) {
+                self.join_sets(agent, conceived.birth.span, written)?;
+            }
             self.set_links(&born);
             let entries: Vec<(usize, &[usize])> =
                 born.iter().map(|&agent| (agent, self.agents.mode(agent).active.as_slice())).collect();
@@ -158,6 +162,52 @@ impl Engine<'_, '_> {
             written.restarted.insert(agent);
         }
         self.bury(written)
+    }
+
+    /// Leads the links by which flows read sets: those of the others to who has been born, those of the newborn to all members.
+    fn join_sets(&mut self, newborn: usize, span: Span, written: &mut Written) -> Result<(), Failure> {
+        let program = self.program;
+        for (ty, system) in program.types.iter().enumerate() {
+            for set in &system.sets {
+                let is_reader = self.agents.agents[newborn].ty == ty;
+                if is_reader {
+                    for member in self.agents.of_type[set.ty].clone() {
+                        self.join([newborn, member], set, span, written)?;
+                    }
+                }
+                for owner in self.agents.of_type[ty].clone() {
+                    if owner != newborn {
+                        self.join([owner, newborn], set, span, written)?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Leads the first free link of a set of an agent to another one, if that is a member.
+    fn join(
+        &mut self,
+        [owner, member]: [usize; 2],
+        set: &SetSystem,
+        span: Span,
+        written: &mut Written,
+    ) -> Result<(), Failure> {
+        let Agent { ty, aux, .. } = &self.agents.agents[member];
+        let is_named = |param| aux[self.program.types[*ty].layout.param(param)] == 1.0;
+        if *ty != set.ty || !set.belongs.is_none_or(is_named) {
+            return Ok(());
+        }
+        let linked = |link: &usize| self.agents.linked(owner, *link);
+        if set.links.clone().any(|link| linked(&link) == member) {
+            return Ok(());
+        }
+        let Some(link) = set.links.clone().find(|link| linked(link) == ABSENT) else {
+            let (place, members) = (self.place(owner), self.program.types[set.ty].name.clone());
+            return Err(Fate::SetFull { place, members, limit: set.links.len() - set.count, span }.into());
+        };
+        self.relink(owner, link, member, written);
+        Ok(())
     }
 
     /// Makes an agent, with its guards, which are not armed yet; returns its place.

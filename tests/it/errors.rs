@@ -62,6 +62,7 @@ fn example(entry: &Explanation) -> Option<Example> {
             ("-p", Some((name, value))) => params.push((name.to_string(), value.to_string())),
             ("--limit", Some(("max_steps", value))) => limits.steps_max = value.parse().unwrap(),
             ("--limit", Some(("max_guards", value))) => limits.guards_max = value.parse().unwrap(),
+            ("--limit", Some(("max_generations", value))) => limits.generations_max = value.parse().unwrap(),
             ("--limit", Some(("max_agents", value))) => limits.agents_max = value.parse().unwrap(),
             _ => {}
         }

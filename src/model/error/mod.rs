@@ -22,22 +22,7 @@ pub(super) use names::NameError;
 pub(super) use properties::PropertyError;
 pub(super) use types::TypeError;
 
-use crate::base::{Diagnostic, Span};
-
-/// A construct of the language whose meaning is not built yet (HY0290).
-pub(super) struct Unsupported {
-    /// In the plural, "`rate` transitions".
-    pub what: String,
-    /// Where it stands.
-    pub span: Span,
-}
-
-impl From<Unsupported> for Diagnostic {
-    fn from(Unsupported { what, span }: Unsupported) -> Self {
-        Diagnostic::error("HY0290", format!("{what} are not supported yet"))
-            .label(span, "this parses, but cannot run")
-    }
-}
+use crate::base::Diagnostic;
 
 /// The same; where nothing is like it, what else to do.
 fn with_similar_or(diagnostic: Diagnostic, similar: &Option<String>, help: impl Into<String>) -> Diagnostic {

@@ -151,6 +151,7 @@ fn settings(number: u64) -> Settings {
 fn limits() -> Limits {
     Limits {
         microsteps_max: 50,
+        generations_max: 50,
         zeno_events: 50,
         steps_max: 200,
         agents_max: 200,

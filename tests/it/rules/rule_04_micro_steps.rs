@@ -245,6 +245,18 @@ fn rule_04_the_limit_is_of_one_transition_instance() {
 }
 
 #[test]
+fn rule_04_a_chain_of_instances_that_each_fire_once_is_no_cycle() {
+    // a chain of 1500 births in one instant: each Dot fires once
+    let text = "agent Dot(n: int) { more: when time >= 1 and n > 0 { create Dot(n = n - 1) } }
+         system { dot = Dot(n = 1500) }  run { until 2 }";
+    assert_eq!(simulate(text).log().len(), 1500);
+    let limits = Limits { generations_max: 1499, ..Limits::default() };
+    let (_, found) = Case::new(text).limits(limits).run_error();
+    assert_eq!(found.code, "HY0530");
+    assert!(words(&[found]).contains("max_generations"));
+}
+
+#[test]
 fn rule_04_roots_as_near_as_the_event_tolerance_are_one_instant() {
     let run = simulate(
         "agent A { discrete n = 0

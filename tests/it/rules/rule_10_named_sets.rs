@@ -97,7 +97,8 @@ fn rule_13_a_named_set_in_a_flow_couples_those_whom_it_names() {
     let run = simulate_to_the_end(text);
     near(run.value("car.x"), 6.0 * (0.5_f64.exp() - 1.0), 1e-5);
     let sets = &Case::new(text).system().1.types[1].sets;
-    assert_eq!(sets.as_slice(), [(0, 2)], "300 others are too many, and are not read");
+    let sets: Vec<(usize, usize)> = sets.iter().map(|set| (set.ty, set.links.len())).collect();
+    assert_eq!(sets, [(0, 2)], "300 others are too many, and are not read");
 }
 
 #[test]

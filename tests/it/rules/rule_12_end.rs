@@ -149,5 +149,5 @@ fn rule_12_an_instant_in_which_births_never_end_is_an_error() {
            hit: when a.x >= b.x + 1 { destroy a  b.n := b.n + 1  create P(v = 10*a.v, x = a.x) } }
          system { p = P[3](v = index) }  run { until 2.05 }",
     );
-    assert_eq!(error.code, "HY0505");
+    assert_eq!(error.code, "HY0530");
 }

@@ -2,7 +2,7 @@
 
 use hyc::base::SourceMap;
 
-use crate::harness::{Case, near, refused, simulate, simulate_by_both_forms, words};
+use crate::harness::{Case, near, simulate, simulate_by_both_forms, simulate_error, words};
 
 /// x_k' = sum (x_o - x_k) over all n: the mean stays, and the way to it shrinks by exp(-n t).
 #[test]
@@ -106,13 +106,71 @@ fn rule_13_a_hazard_reads_a_set() {
     a.iter().zip(&b).for_each(|(a, b)| near(*a, *b, 1e-6));
 }
 
+/// Who is born pulls and is pulled from then on; the pulls cancel, so the sum of all moves by births alone.
 #[test]
-fn rule_13_a_set_that_grows_is_refused_in_a_flow() {
-    let told = refused(
-        "agent A { state x = 0  flow { x' = sum o in A: o.x }  after 1 { create A() } }
-         system { a = A() }  run { until 1 }",
+fn rule_13_who_is_born_pulls_and_is_pulled() {
+    let run = simulate_by_both_forms(
+        "agent A(lays: bool = false) { state x = 0  flow { x' = sum o in other A: o.x - x }  split: after 0.25 when lays { create A(x = 9) } }
+         agent Reader { state n = 0, top = 0
+           flow { n' = count o in A  top' = if exists o in A: o.x > 8 then 1 else 0 } }
+         system { a = A[2](x = 3*index, lays = index == 1)  r = Reader() }
+         run { until 1  tolerance 1e-10 }",
     );
-    assert!(told.contains("over agents that are created"), "{told}");
+    let two = |start: f64| 1.5 + (start - 1.5) * (-0.5f64).exp();
+    let three = |start: f64, d: f64| 4.0 + (start - 4.0) * (-3.0 * d).exp();
+    near(run.value("a[0].x"), three(two(0.0), 0.75), 1e-8);
+    near(run.value("a[1].x"), three(two(3.0), 0.75), 1e-8);
+    near(run.value("A#3.x"), three(9.0, 0.75), 1e-8);
+    near(run.value("r.n"), 2.0 * 0.25 + 3.0 * 0.75, 1e-9);
+    near(run.value("r.top"), 0.2231435513142097 / 3.0, 1e-8); // 4 + 5 exp(-3 d) = 8
+}
+
+/// Those who are born together, and read a set that does not grow, or one that somebody else is of.
+#[test]
+fn rule_13_the_newborn_read_their_sets() {
+    let run = simulate_by_both_forms(
+        "agent Lead { state x = 0  flow { x' = 1 } }
+         agent Car { state y = 0, z = 0  flow { y' = (sum o in Lead: o.x)  z' = (sum o in b: o.x) + 10*(count o in other Car) } }
+         agent Maker { both: after 1 { create Car()  create Car() }  more: after 2 { create Lead(x = 5) } }
+         system { a = Lead()  b = Lead(x = 1)  m = Maker() }
+         run { until 3  tolerance 1e-10 }",
+    );
+    // at 1 s the leads are at 1 and 2; at 2 s there is a third at 5
+    for car in ["Car#3", "Car#4"] {
+        near(run.value(&format!("{car}.y")), 3.0 * 2.0 + 4.0 + 5.5, 1e-8);
+        near(run.value(&format!("{car}.z")), 2.0 * 2.0 + 2.0 + 20.0, 1e-8);
+    }
+}
+
+/// A place is free again when its agent dies.
+#[test]
+fn rule_13_a_set_takes_any_number_one_after_the_other() {
+    let text = |life: f64| {
+        format!(
+            "agent A {{ state x = 1  flow {{ x' = -0*(sum o in A: o.x) }}  die: after {life} {{ destroy self }} }}
+             agent Nest {{ state n = 0  flow {{ n' = sum o in A: o.x }}  lay: every 0.1 {{ create A() }} }}
+             system {{ nest = Nest() }}  run {{ until 9.95 }}"
+        )
+    };
+    near(simulate(&text(0.25)).value("nest.n"), 97.0 * 0.25 + 0.15 + 0.05, 1e-6);
+    let (_, found) = simulate_error(&text(5.0));
+    assert_eq!(found.code, "HY0536");
+    assert!(words(&[found]).contains("more than 32 agents of `A` join"));
+}
+
+/// What has no member has no kinks: they would be searched for in vain, in thousands of pieces.
+#[test]
+fn rule_13_free_places_of_a_set_cost_no_search() {
+    let run = simulate(
+        "agent A(lays: bool = false) { state x = 0  flow { x' = 1 + 0.1*(sum o in A: abs(o.x - x)) }  one: after 1 when lays { create A() } }
+         system { a = A[2](x = index, lays = index == 0) }  run { until 3 }",
+    );
+    let evaluations = run.stats.guard_evaluations;
+    assert!(evaluations < 20_000, "{evaluations}");
+}
+
+#[test]
+fn rule_13_a_set_in_a_flow_has_a_limit() {
     let many = Case::new(
         "agent A { state x = 0  flow { x' = sum o in A: o.x - x } }
          system { a = A[300]() }  run { until 1 }",
