@@ -203,7 +203,8 @@ fn over_members(draft: &mut Draft, scope: &mut Scope, env: EnvId, id: ExprId) ->
         let inner = scope.bound_env(env, binder, slot);
         let mut belongs = present(draft, scope, member);
         if other {
-            let [own, its] = [AgentRef::Slot(0), member].map(|agent| agent_number(draft, scope, agent));
+            let whose = AgentRef::Slot(scope.env_of(env).this);
+            let [own, its] = [whose, member].map(|agent| agent_number(draft, scope, agent));
             let differs = draft.graph.binary(Op::Ne, own, its);
             belongs = draft.graph.binary(Op::And, belongs, differs);
         }
@@ -277,7 +278,7 @@ fn is_boolean_column(draft: &Draft, ty: usize, node: Node) -> bool {
     params.chain(discretes).any(|(at, c)| at == column && c.boolean)
 }
 
-/// `x'`: in the flow itself the equation of self, elsewhere what the runtime says.
+/// `x'`: in a flow the equation of the mode that is active, elsewhere what the runtime says.
 fn rate(
     draft: &mut Draft,
     scope: &mut Scope,
@@ -292,9 +293,25 @@ fn rate(
     };
     match &scope.equations {
         Some(equations) if slot == 0 => need(scope, Scope::TOP, equations[k]),
-        Some(_) => Err(Error::ForeignRate { span }.into()),
+        Some(_) => Ok(Value::Number(foreign_rate(draft, scope, slot, k)?)),
         None => Ok(Value::Number(draft.graph.intern(Node::Rate { slot: slot as u32, column: k as u32 }))),
     }
+}
+
+/// The rate of state `k` of another agent, in a flow: the equation of that of its modes which is active.
+fn foreign_rate(draft: &mut Draft, scope: &mut Scope, slot: usize, k: usize) -> Result<NodeId, Wait> {
+    let model = draft.model;
+    let modes = &model.types[TypeId::new(scope.frame.slots[slot].ty())].modes;
+    let inner = scope.env(Env { this: slot, ..Env::default() });
+    let mut value = draft.graph.number(f64::NAN);
+    for mode in modes.indices() {
+        for &(_, rate, _) in modes[mode].flow.iter().filter(|(state, _, _)| *state == k) {
+            let rate = need_number(scope, inner, rate)?;
+            let is_active = in_mode(draft, scope, slot, mode);
+            value = draft.graph.select(is_active, rate, value);
+        }
+    }
+    Ok(value)
 }
 
 /// Environment and body of a let of an agent; none for one of `none`.

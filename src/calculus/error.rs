@@ -9,8 +9,6 @@ pub enum Error {
     QuantifierInNumber { span: Span },
     /// `not rising(..)`, `not crossing(..)`.
     EventNegated { word: &'static str, span: Span },
-    /// The rate of another agent in a flow.
-    ForeignRate { span: Span },
     /// Too many agents in one frame.
     TooManySlots { limit: usize, span: Span },
     /// A condition with too many parts.
@@ -29,9 +27,7 @@ impl Error {
             | Error::ConditionTooLarge { .. }
             | Error::ConditionTooDeep { .. }
             | Error::TooMuchWork { .. } => true,
-            Error::QuantifierInNumber { .. } | Error::EventNegated { .. } | Error::ForeignRate { .. } => {
-                false
-            }
+            Error::QuantifierInNumber { .. } | Error::EventNegated { .. } => false,
         }
     }
 
@@ -47,11 +43,6 @@ impl Error {
                 Diagnostic::error("HY0302", format!("`{word}` cannot be negated"))
                     .label(span, "true at an instant, so its negation holds nearly always")
                     .help("negate the condition inside it")
-            }
-            Error::ForeignRate { span } => {
-                Diagnostic::error("HY0303", "the rate of another agent in a flow is not supported yet")
-                    .label(span, "a rate, not a state")
-                    .help("write the other agent's equation in its place")
             }
             Error::TooManySlots { limit, span } => {
                 Diagnostic::error("HY0304", "an expression that reaches too many agents")

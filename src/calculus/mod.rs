@@ -53,7 +53,7 @@ pub use crate::calculus::lint::lint;
 use crate::calculus::system::System;
 use crate::model::ir::Model;
 
-/// The equations of a model, or what is not supported in it.
+/// The equations of a model, or why it has none.
 pub fn derive(model: &Model) -> Result<System, Vec<Diagnostic>> {
     let mut draft = Draft::new(model);
     agents::mode_tree(&mut draft);

@@ -7,14 +7,16 @@
 use rustc_hash::FxHashSet;
 
 use super::context::Context;
-use super::ir::{ExprId, ExprKind, Link, Set, Trigger, TypeId};
+use super::ir::{AgentType, ExprId, ExprKind, Link, Set, Trigger, Type, TypeId};
 use super::membership::Named;
 use super::operands::for_each_operand;
 use crate::base::Span;
 
 /// Gives agents links to all members of the sets that their flows read.
 pub(super) fn fill(context: &mut Context) {
-    if context.has_errors() {
+    let ranges =
+        |id| matches!(context.model.exprs[id].kind, ExprKind::Quantifier { .. } | ExprKind::Aggregate { .. });
+    if context.has_errors() || !context.model.exprs.indices().any(ranges) {
         return;
     }
     let created: FxHashSet<TypeId> = context.model.creations().iter().map(|create| create.ty).collect();
@@ -35,12 +37,12 @@ fn sets_read(context: &Context, ty: TypeId) -> Vec<(Named, Span)> {
         Trigger::Rate { rate, .. } => Some(rate),
         _ => None,
     });
-    let flows = model.types[ty].modes.iter().flat_map(|mode| &mode.flow).map(|&(_, rate, _)| rate);
+    let flows = equations(&model.types[ty]).map(|(_, rate)| rate);
     let mut pending: Vec<ExprId> = flows.chain(rates).collect();
     pending.reverse();
     let (mut seen, mut found) = (FxHashSet::default(), Vec::<(Named, Span)>::new());
     while let Some(id) = pending.pop() {
-        if !context.facts[id.index()].quantified || !seen.insert(id) {
+        if !seen.insert(id) {
             continue;
         }
         let expr = &model.exprs[id];
@@ -53,12 +55,24 @@ fn sets_read(context: &Context, ty: TypeId) -> Vec<(Named, Span)> {
                 }
             }
             ExprKind::Let(agent, number) => pending.extend(context.let_value(*agent, *number)),
+            ExprKind::Rate(agent, state) => {
+                if let Type::Agent(ty) | Type::Link(ty) = model.exprs[*agent].ty {
+                    pending.extend(
+                        equations(&model.types[ty]).filter(|(of, _)| of == state).map(|(_, rate)| rate),
+                    );
+                }
+            }
             ExprKind::Call(function, _) => pending.push(model.functions[*function].body),
             _ => {}
         }
         for_each_operand(&expr.kind, |operand| pending.push(operand));
     }
     found
+}
+
+/// The equations of a type, in all its modes: of which state, and what.
+fn equations(ty: &AgentType) -> impl Iterator<Item = (usize, ExprId)> {
+    ty.modes.iter().flat_map(|mode| &mode.flow).map(|&(state, rate, _)| (state, rate))
 }
 
 /// Gives every agent of a type a link to each of a set, and room for those who come to be.

@@ -69,23 +69,6 @@ fn every_sample_of_the_reference_is_sound() {
 }
 
 #[test]
-fn what_the_reference_calls_refused_is_refused_as_not_supported_yet() {
-    let mut samples = fenced(&document("docs/LANGUAGE.md"), "hy refused");
-    assert!(!samples.is_empty());
-    samples.extend(fenced(&document("docs/PAPER.md"), "hy refused"));
-    for sample in samples {
-        let (sources, diagnostics) = diagnose(&sample);
-        let told = render(&sources, &diagnostics, Colours::None);
-        let refused = diagnostics.iter().any(|diagnostic| diagnostic.title.contains("not supported yet"));
-        assert!(refused, "{sample}\n{told}");
-        assert!(
-            !diagnostics.iter().any(|diagnostic| diagnostic.code.starts_with("HY01")),
-            "{sample}\n{told}"
-        );
-    }
-}
-
-#[test]
 fn the_machine_of_the_paper_page_goes_on_with_what_it_did() {
     // written flat, and with modes in modes
     for sample in &fenced(&document("docs/PAPER.md"), "hy")[..2] {

@@ -1,6 +1,6 @@
 //! Rule 13: flows that read other agents' states.
 
-use crate::harness::{near, simulate};
+use crate::harness::{near, refused, simulate, simulate_by_both_forms};
 
 #[test]
 fn rule_13_a_follower_reads_its_leader() {
@@ -135,4 +135,61 @@ fn rule_13_a_stop_of_a_coupled_leader() {
     // y(1) = exp(-1); afterwards 1 - (1 - y(1)) exp(-(t - 1))
     let expected = 1.0 - (1.0 - (-1f64).exp()) * (-2f64).exp();
     near(run.value("c.y"), expected, 1e-9);
+}
+
+#[test]
+fn rule_13_a_flow_reads_the_rate_of_another() {
+    // lead.v' = -lead.v, then 2: the follower moves by its own distance and the rate of the leader
+    let run = simulate_by_both_forms(
+        "agent Lead {
+           state v = 1
+           let pull = -v
+           initial mode Coast { flow { v' = pull }  after 1 -> Drive }
+           mode Drive { flow { v' = 2 } } }
+         agent Car(lead: Lead) { state y = 0, z = 0  flow { y' = 3*lead.v'  z' = y' + lead.v' } }
+         agent Loose { link lead: Lead  state y = 0  flow { y' = if lead then lead.v' else 1 } }
+         system { lead = Lead()  car = Car(lead = lead)  a = Loose(lead = lead)  b = Loose() }
+         run { until 3  tolerance 1e-10 }",
+    );
+    let gain = (-1f64).exp() - 1.0 + 4.0;
+    near(run.value("car.y"), 3.0 * gain, 1e-8);
+    near(run.value("car.z"), 4.0 * gain, 1e-8);
+    near(run.value("a.y"), gain, 1e-8);
+    near(run.value("b.y"), 3.0, 1e-8);
+}
+
+#[test]
+fn rule_13_rates_through_a_chain_and_over_a_set() {
+    // c' = b' + 1 = a' + 2 = t + 2; all = sum of the rates of the three
+    let run = simulate_by_both_forms(
+        "agent A { state x = 0  flow { x' = time } }
+         agent B(up: A) { state x = 0  flow { x' = up.x' + 1 } }
+         agent C(up: B) { state x = 0  flow { x' = up.x' + 1 } }
+         agent All { state x = 0  flow { x' = (sum o in A: o.x') + (sum o in B: o.x') + (sum o in C: o.x') } }
+         system { a = A()  b = B(up = a)  c = C(up = b)  all = All() }
+         run { until 2  tolerance 1e-10 }",
+    );
+    near(run.value("c.x"), 2.0 + 4.0, 1e-9);
+    near(run.value("all.x"), 3.0 * 2.0 + 6.0, 1e-9);
+}
+
+#[test]
+fn rule_13_rates_without_an_end_are_refused() {
+    let told = refused(
+        "agent Car { link lead: Car  state v = 0  flow { v' = if lead then lead.v' + lead.v - v else 1 } }
+         system { a = Car()  b = Car(lead = a) }  run { until 1 }",
+    );
+    assert!(told.contains("HY0207") && told.contains("in a circle"), "{told}");
+}
+
+/// `other` in a `let` is other than whose `let` it is, whoever reads it.
+#[test]
+fn rule_13_a_let_of_another_ranges_over_its_others() {
+    let run = simulate_by_both_forms(
+        "agent Lead { state x = 0  let others = sum o in other Lead: o.x  flow { x' = 1 } }
+         agent Car(lead: Lead) { state y = 0  flow { y' = lead.others } }
+         system { leads = Lead[3](x = index)  car = Car(lead = leads[1]) }
+         run { until 1  tolerance 1e-10 }",
+    );
+    near(run.value("car.y"), 2.0 + 2.0 * 0.5, 1e-9);
 }
