@@ -137,7 +137,9 @@ impl Observer for Tables<'_> {
         if let Some(also) = &mut self.also {
             also.event(event)?;
         }
-        for agent in [Some(event.agent), event.other].into_iter().flatten() {
+        // One firing is one event, however many rows it has.
+        let agents = if event.row == 0 { [Some(event.agent), event.other] } else { [None; 2] };
+        for agent in agents.into_iter().flatten() {
             *self.events.entry(agent).or_default() += 1;
         }
         self.timed(|tables| match &mut tables.event_log {

@@ -70,7 +70,7 @@ fn who(number: usize) -> Who {
 }
 
 fn event(time: f64) -> Event<'static> {
-    Event { time, micro: 0, transition: "Car.left", agent: who(0), other: None, modes: None }
+    Event { time, micro: 0, row: 0, transition: "Car.left", agent: who(0), other: None, modes: None }
 }
 
 #[test]
@@ -114,6 +114,7 @@ fn an_event_is_one_row() {
     let bump = Event {
         time: 1e-9,
         micro: 2,
+        row: 0,
         transition: "Bump.pair",
         agent: who(1),
         other: Some(who(2)),

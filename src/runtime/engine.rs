@@ -160,7 +160,7 @@ pub struct Engine<'p, 'o> {
     pub limits: Limits,
     /// The end of the run, s; infinite if none is set.
     pub time_end: f64,
-    /// Rows of the event log.
+    /// Events: firings of transitions.
     pub n_events: u64,
     /// Firings of each definition.
     pub firings: Vec<u64>,

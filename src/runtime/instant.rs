@@ -247,8 +247,6 @@ impl Engine<'_, '_> {
     }
 
     pub fn count_firing(&mut self, instance: u32) -> Result<(), Failure> {
-        let definition = self.guards.instances[instance as usize].definition as usize;
-        self.firings[definition] += 1;
         let trigger = self.guards.definition(instance).trigger();
         // Whoever emits is counted; that many emit at once is nothing to complain of.
         let scheduled =
@@ -282,28 +280,31 @@ impl Engine<'_, '_> {
         (place, cycle, compared, span)
     }
 
-    /// Writes the rows of the event log for one firing.
+    /// Counts one firing, and writes its rows of the event log.
     fn log(&mut self, ranked: &Ranked, effect: &Effect, micro: usize) -> Result<(), Failure> {
         let instance = ranked.candidate.instance;
         if !self.agents.who(ranked.slots[0]).is_visible() {
             return Ok(());
         }
         let (label, _) = self.label(instance);
+        let definition = self.guards.instances[instance as usize].definition as usize;
         let pair = matches!(self.guards.definition(instance).origin, Origin::Pair(_));
         let time = self.present.time;
         let ty = self.agents.agents[ranked.slots[0]].ty;
         let sender =
             if ranked.candidate.by == By::Message { self.mail.sender_at(ranked.slots[0]) } else { None };
         let agent = self.agents.who(ranked.slots[0]);
-        let mut event = Event { time, micro, transition: label, agent, other: sender, modes: None };
+        self.firings[definition] += 1;
+        self.n_events += 1;
+        self.events_of_type[ty] += 1;
+        let mut event = Event { time, micro, row: 0, transition: label, agent, other: sender, modes: None };
         if effect.moves.is_empty() {
             event.other = if pair { Some(self.agents.who(ranked.slots[1])) } else { sender };
-            self.n_events += 1;
-            self.events_of_type[ty] += 1;
             self.observer.event(&event)?;
             return Ok(());
         }
-        for change in &effect.moves {
+        for (row, change) in effect.moves.iter().enumerate() {
+            event.row = row;
             let modes = &self.program.types[self.agents.agents[change.agent].ty].modes;
             event.agent = self.agents.who(change.agent);
             if pair {
@@ -311,8 +312,6 @@ impl Engine<'_, '_> {
                 event.other = other.map(|&other| self.agents.who(other));
             }
             event.modes = Some((&modes[change.from].path, &modes[change.to].path));
-            self.n_events += 1;
-            self.events_of_type[ty] += 1;
             self.observer.event(&event)?;
         }
         Ok(())

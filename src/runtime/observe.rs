@@ -27,7 +27,7 @@ impl Who {
 
 /// Told of a run as it proceeds, in the order of time. An `Err` ends the run (the disk is full, say).
 pub trait Observer {
-    /// A transition has fired.
+    /// A transition has fired: called for each of its rows of the event log.
     fn event(&mut self, event: &Event<'_>) -> io::Result<()>;
     /// A row of record number `record` of the run's settings.
     fn sample(&mut self, _record: usize, _row: &Row<'_>) -> io::Result<()> {
@@ -156,6 +156,8 @@ pub struct Event<'a> {
     pub time: f64,
     /// Number of the micro-step in its instant, from 0.
     pub micro: usize,
+    /// Its number among the rows of one firing, from 0: there is one for each mode that changes, and one if none does.
+    pub row: usize,
     /// `Car.left`, `Bump.pair`.
     pub transition: &'a str,
     /// The agent (in an interaction: the first participant, or the one whose mode changes).
@@ -318,7 +320,7 @@ pub struct FalseAssert {
 /// Counts of a run. The same for the same model, seed and settings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stats {
-    /// Rows of the event log.
+    /// Events: how often transitions have fired, the sum of `transitions`. One may have several rows in the event log.
     pub events: u64,
     /// Accepted steps (a coupled group's step counts once for each member).
     pub steps: u64,
@@ -384,6 +386,6 @@ pub struct TypeStats {
     pub destroyed: u64,
     /// Their accepted steps.
     pub steps: u64,
-    /// Events of their transitions (interactions count for the first participant's type).
+    /// How often their transitions have fired (interactions count for the first participant's type).
     pub events: u64,
 }
