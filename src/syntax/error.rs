@@ -120,7 +120,7 @@ pub enum SyntaxError {
         /// What is wrong.
         title: &'static str,
         /// What to type.
-        help: &'static str,
+        help: String,
     },
     /// Parentheses behind something that is not a name.
     NotAFunction {
@@ -129,14 +129,14 @@ pub enum SyntaxError {
         /// What stands before them.
         callee: Span,
     },
-    /// A statement that begins with a word that looks like a keyword.
-    MisspeltKeyword {
+    /// A word that is nearly a keyword, or stands for one in other languages.
+    UnknownWord {
         /// The word.
         span: Span,
-        /// The word.
-        word: String,
-        /// The keyword.
-        keyword: String,
+        /// What is wrong.
+        title: String,
+        /// What to type.
+        help: String,
     },
     /// `history` as a mode's name, or where no mode is entered.
     MisplacedHistory {
@@ -235,7 +235,7 @@ impl SyntaxError {
                 .label(*span, "a second comparison")
                 .help("write `a < b and b < c`"),
             Self::ArgumentStyle { span, title, help } => {
-                Diagnostic::error("HY0115", *title).label(*span, "in this argument").help(*help)
+                Diagnostic::error("HY0115", *title).label(*span, "in this argument").help(help.as_str())
             }
             Self::NotAFunction { span, callee } => {
                 Diagnostic::error("HY0116", "only a function's name can be called")
@@ -243,11 +243,9 @@ impl SyntaxError {
                     .label(*callee, "not the name of a function")
                     .help("a product needs its sign: `2*(a + b)`")
             }
-            Self::MisspeltKeyword { span, word, keyword } => {
-                Diagnostic::error("HY0117", format!("no statement begins with `{word}`"))
-                    .label(*span, "unknown keyword")
-                    .help(format!("did you mean `{keyword}`?"))
-            }
+            Self::UnknownWord { span, title, help } => Diagnostic::error("HY0117", title.as_str())
+                .label(*span, "unknown keyword")
+                .help(help.as_str()),
             Self::MisplacedHistory { span } => {
                 Diagnostic::error("HY0118", "`history` stands only at the end of a target after `->`")
                     .label(*span, "not possible here")
@@ -308,6 +306,7 @@ fn character_help(character: char) -> Option<&'static str> {
         '\u{2265}' => Some("write `>=`"),
         '\u{2260}' => Some("write `!=`"),
         '\u{2192}' => Some("write `->`"),
+        '?' => Some("in an expression write `if c then a else b`"),
         '\u{00b0}' => Some("degrees are the unit `[deg]`"),
         other if other.is_alphabetic() => Some("names are made of the letters a to z, digits and `_`"),
         _ => None,

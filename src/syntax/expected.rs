@@ -1,11 +1,12 @@
 //! Turns the place where the grammar gave up into an error that a person can act on.
 //!
 //! In: the text with its tokens, pest's error (a position and the rules that would have fitted there). Out: one [`SyntaxError`]. Common
-//! mistakes are recognised one after the other; what is left is "expected ..., found ...".
+//! mistakes are recognised one after the other, words of other languages by a table; what is left is "expected ..., found ...".
 
 use pest::error::{Error, ErrorVariant, InputLocation};
 
 use super::error::SyntaxError;
+use super::foreign::{self, Place};
 use super::grammar::{Rule, is_reserved};
 use super::scan::{Source, TokenKind};
 use super::words::{NAMES, OPERATOR, STATEMENTS, in_words, words_that_begin};
@@ -29,9 +30,23 @@ pub fn explain(source: Source, error: &Error<Rule>) -> SyntaxError {
         .argument_style()
         .or_else(|| failure.wrong_assignment())
         .or_else(|| failure.chained_comparison())
+        .or_else(|| failure.foreign_operator())
+        .or_else(|| failure.foreign_statement())
+        .or_else(|| failure.without_brackets())
         .or_else(|| failure.misspelt_keyword())
         .or_else(|| failure.reserved_word())
         .unwrap_or_else(|| failure.unexpected())
+}
+
+/// Words with which expressions and formulas begin.
+const PREFIXES: [&str; 6] = ["always", "eventually", "exists", "forall", "count", "nearest"];
+
+fn argument_style(span: Span, title: &'static str, help: &str) -> SyntaxError {
+    SyntaxError::ArgumentStyle { span, title, help: help.to_string() }
+}
+
+fn no_statement(word: &str) -> String {
+    format!("no statement begins with `{word}`")
 }
 
 /// Where the grammar gave up.
@@ -97,7 +112,12 @@ impl Failure<'_> {
                 "write `=`; only actions assign with `:=`".to_string(),
             )
         } else if sign == "=" && self.fits(Rule::compare_op) {
-            ("`=` does not compare".to_string(), "write `==`".to_string())
+            let help = if self.in_condition() {
+                "write `==`; what flows is never equal but for an instant: `x >= 3`, or `crossing(x - 3)`"
+            } else {
+                "write `==`"
+            };
+            ("`=` does not compare".to_string(), help.to_string())
         } else {
             return None;
         };
@@ -116,6 +136,10 @@ impl Failure<'_> {
             }
         }
         None
+    }
+
+    fn in_parentheses(&self) -> bool {
+        self.opener().is_some_and(|open| self.token(Some(open)) == "(")
     }
 
     fn in_flow(&self) -> bool {
@@ -140,20 +164,23 @@ impl Failure<'_> {
         let only =
             |rules: &[Rule]| !self.fitting.is_empty() && self.fitting.iter().all(|rule| rules.contains(rule));
         if only(&[Rule::equals, Rule::tilde]) && !matches!(self.found(), ":=" | "==") {
-            let (title, help) = ("the arguments of a constructor have names", "write `Car(v = 4)`");
-            return Some(SyntaxError::ArgumentStyle { span: self.span_of(self.found - 1), title, help });
+            let span = self.span_of(self.found - 1);
+            return Some(argument_style(
+                span,
+                "the arguments of a constructor have names",
+                "write `Car(v = 4)`",
+            ));
         }
         if only(&[Rule::named_arg, Rule::close_paren, Rule::name])
             && self.is_constructor(open)
             && !self.is_word(self.found)
         {
-            let (title, help) = ("the arguments of a constructor have names", "write `Car(v = 4)`");
-            return Some(SyntaxError::ArgumentStyle { span: self.span(), title, help });
+            let title = "the arguments of a constructor have names";
+            return Some(argument_style(self.span(), title, "write `Car(v = 4)`"));
         }
         if matches!(self.found(), "=" | "~") && self.fits(Rule::comma) && self.fits(Rule::close_paren) {
-            let (title, help) =
-                ("the arguments of a call have no names", "give them by their position: `f(1, 2)`");
-            return Some(SyntaxError::ArgumentStyle { span: self.span(), title, help });
+            let title = "the arguments of a call have no names";
+            return Some(argument_style(self.span(), title, "give them by their position: `f(1, 2)`"));
         }
         None
     }
@@ -167,18 +194,186 @@ impl Failure<'_> {
         matches!(self.token(Some(k)), "=" | "create") && self.found() != ")"
     }
 
-    /// `sate x, y`: a word that begins no statement but looks like a keyword that does.
+    /// What the braces around the failure belong to.
+    fn place(&self) -> Place {
+        let Some(open) = self.innermost_brace() else { return Place::File };
+        let before = |steps: usize| self.token(open.checked_sub(steps));
+        match (before(2), before(1)) {
+            (_, "flow") => Place::Flow,
+            (_, "system") => Place::System,
+            (_, "run") => Place::Run,
+            (_, "entry" | "exit" | "else") => Place::Actions,
+            ("agent" | "mode" | "region", _) => Place::Body,
+            (_, ")") => {
+                let closed = (0..open).rev().find(|&k| self.token(Some(k)) == "(");
+                let head = closed.and_then(|k| k.checked_sub(2)).map_or("", |k| self.token(Some(k)));
+                if matches!(head, "agent" | "interaction") { Place::Body } else { Place::Actions }
+            }
+            _ => Place::Actions,
+        }
+    }
+
+    /// The brace that is open where the failure is.
+    fn innermost_brace(&self) -> Option<usize> {
+        let mut closed = 0_usize;
+        (0..self.found.min(self.source.tokens.len())).rev().find(|&k| match self.token(Some(k)) {
+            "}" => {
+                closed += 1;
+                false
+            }
+            "{" if closed > 0 => {
+                closed -= 1;
+                false
+            }
+            token => token == "{",
+        })
+    }
+
+    /// Whether the failure is in the condition of a transition.
+    fn in_condition(&self) -> bool {
+        let ends =
+            |token: &str| matches!(token, "{" | "}" | "->" | "let" | "invariant" | "assert" | "by" | "flow");
+        let before = (0..self.found).rev().map(|k| self.token(Some(k)));
+        before.take_while(|token| !ends(token)).any(|token| token == "when")
+    }
+
+    /// Whether a token stands on the line of the one before it, with only blanks between them.
+    fn continues(&self, k: usize) -> bool {
+        let between = k.checked_sub(1).and_then(|before| {
+            let (before, this) = (self.source.tokens.get(before)?, self.source.tokens.get(k)?);
+            self.source.text.get(before.end()..this.start())
+        });
+        between.is_some_and(|between| between.chars().all(|c| matches!(c, ' ' | '\t')))
+    }
+
+    /// Whether a statement goes on with this token behind its first name.
+    fn is_named(&self, k: usize) -> bool {
+        matches!(self.token(Some(k + 1)), "=" | ":=" | ":" | "~" | "'" | "." | "->")
+    }
+
+    /// Whether a statement may begin with this token: the one before it does not ask for more.
+    fn may_begin(&self, k: usize) -> bool {
+        let Some(before) = k.checked_sub(1) else { return true };
+        let word = self.token(Some(before));
+        match self.source.tokens.get(before).map(|token| token.kind) {
+            Some(TokenKind::Symbol) => matches!(word, "{" | "}" | ")" | "]" | "'"),
+            Some(TokenKind::Word) => !is_reserved(word),
+            Some(TokenKind::Number | TokenKind::Text) | None => true,
+        }
+    }
+
+    /// The tokens that can be what is wrong: the one that did not fit, and the one before it, which fitted as a name.
+    fn suspects(&self) -> impl Iterator<Item = usize> {
+        [Some(self.found), self.found.checked_sub(1)].into_iter().flatten()
+    }
+
+    /// `a AND b`, `a mod b`
+    fn foreign_operator(&self) -> Option<SyntaxError> {
+        let is_operand = |k: usize| match self.source.tokens.get(k).map(|token| token.kind) {
+            Some(TokenKind::Word) => !is_reserved(self.token(Some(k))) || self.fits(Rule::operator),
+            Some(TokenKind::Number) => true,
+            _ => matches!(self.token(Some(k)), ")" | "]"),
+        };
+        let between = |&k: &usize| self.continues(k) && is_operand(k - 1);
+        self.suspects().filter(between).find_map(|k| {
+            let (span, text) = (self.span_of(k), self.token(Some(k)).to_string());
+            foreign::operator(&text).map(|help| SyntaxError::ForeignOperator { span, text, help })
+        })
+    }
+
+    /// `sin x`: an argument without parentheses; `1 s`: a unit without brackets.
+    fn without_brackets(&self) -> Option<SyntaxError> {
+        let begins = |k: usize| self.is_named(k) && self.token(Some(k + 1)) != "->";
+        self.suspects().filter(|&k| self.continues(k) && !begins(k)).find_map(|k| {
+            let (before, this) = (self.token(Some(k - 1)), self.token(Some(k)));
+            let is_value = self.source.tokens.get(k).is_some_and(|token| {
+                token.kind == TokenKind::Number || token.kind == TokenKind::Word && !is_reserved(this)
+            });
+            if is_value && foreign::FUNCTIONS.contains(&before) {
+                let (title, help) =
+                    ("an argument stands in parentheses", format!("write `{before}({this})`"));
+                return Some(SyntaxError::ArgumentStyle { span: self.span_of(k), title, help });
+            }
+            let is_number = self.source.tokens[k - 1].kind == TokenKind::Number;
+            let may_be_unit = self.is_word(k) && (!is_reserved(this) || this == "min");
+            (is_number && may_be_unit).then(|| self.bare_unit(k))
+        })
+    }
+
+    /// The number before this token, and the unit that begins with it.
+    fn bare_unit(&self, k: usize) -> SyntaxError {
+        let is_sign = |k: usize| matches!(self.token(Some(k)), "/" | "*" | "^");
+        let is_part =
+            |k: usize| self.source.tokens.get(k).is_some_and(|token| token.kind != TokenKind::Symbol);
+        let mut last = k;
+        while is_sign(last + 1) && is_part(last + 2) && self.continues(last + 1) && self.continues(last + 2) {
+            last += 2;
+        }
+        let (number, spelt) = (self.span_of(k - 1), self.span_of(k).to(self.span_of(last)));
+        let text = |span: Span| &self.source.text[span.range()];
+        let (count, word) = (text(number), text(spelt));
+        let help = match foreign::unit(word) {
+            Some(unit) => format!("a unit stands in brackets: `{count} [{unit}]`"),
+            None => format!(
+                "a unit stands in brackets, `{count} [{word}]`; a product has its sign, `{count}*{word}`"
+            ),
+        };
+        let span = number.to(spelt);
+        SyntaxError::MalformedNumber { span, text: text(span).to_string(), help }
+    }
+
+    /// `var x = 0`: a word that begins statements in other languages.
+    fn foreign_statement(&self) -> Option<SyntaxError> {
+        let place = self.place();
+        if self.before(2) == "new" && matches!(self.before(3), "=" | "create") {
+            let (expected, found) = (vec!["an agent type".to_string()], "the name `new`".to_string());
+            let head = if self.before(3) == "=" { format!("{} =", self.before(4)) } else { "create".into() };
+            let help = Some(format!("leave out `new`: `{head} {}()`", self.before(1)));
+            return Some(SyntaxError::Unexpected {
+                span: self.span_of(self.found - 2),
+                expected,
+                found,
+                help,
+            });
+        }
+        let heads = self.suspects().chain(self.statement_start());
+        heads.filter(|&k| self.is_word(k) && !self.is_named(k) && self.may_begin(k)).find_map(|k| {
+            let word = self.token(Some(k));
+            let help = foreign::statement(word, place)?.to_string();
+            let title = if is_reserved(word) {
+                format!("no statement begins with `{word}` here")
+            } else {
+                no_statement(word)
+            };
+            Some(SyntaxError::UnknownWord { span: self.span_of(k), title, help })
+        })
+    }
+
+    /// `sate x, y`: a word that begins no statement but looks like a keyword that does; `alwasy x > 0`.
     fn misspelt_keyword(&self) -> Option<SyntaxError> {
         let fitting: Vec<String> = self.fitting.iter().flat_map(|rule| words_that_begin(*rule)).collect();
         let known: Vec<String> = STATEMENTS.iter().map(|word| word.to_string()).collect();
         let (k, keyword) = self
             .looks_like(Some(self.found), &fitting)
-            .or_else(|| self.looks_like(self.statement_start(), &known))?;
-        Some(SyntaxError::MisspeltKeyword {
-            span: self.span_of(k),
-            word: self.token(Some(k)).to_string(),
-            keyword,
-        })
+            .or_else(|| self.looks_like(self.statement_start(), &known))
+            .or_else(|| self.misspelt_prefix())?;
+        let word = self.token(Some(k));
+        let title = if PREFIXES.contains(&keyword.as_str()) {
+            format!("unknown word `{word}`")
+        } else {
+            no_statement(word)
+        };
+        let help = format!("did you mean `{keyword}`?");
+        Some(SyntaxError::UnknownWord { span: self.span_of(k), title, help })
+    }
+
+    /// A word that looks like one with which an expression begins, before something that cannot follow a name.
+    fn misspelt_prefix(&self) -> Option<(usize, String)> {
+        let before = self.found.checked_sub(1).filter(|_| self.continues(self.found))?;
+        let is_value =
+            self.source.tokens.get(self.found).is_some_and(|token| token.kind != TokenKind::Symbol);
+        let prefixes = PREFIXES.map(String::from);
+        is_value.then(|| self.looks_like(Some(before), &prefixes)).flatten()
     }
 
     /// The number of a token that is a name but nearly one of these words, and that word.
@@ -199,8 +394,7 @@ impl Failure<'_> {
         let end = self.source.tokens.get(self.found)?.start();
         let line = self.source.text[..end].rfind(['\n', ';', '{', '}']).map_or(0, |at| at + 1);
         let first = self.source.tokens.partition_point(|token| token.start() < line);
-        let named = matches!(self.token(Some(first + 1)), "=" | ":=" | ":" | "~" | "'" | "." | "->");
-        (first < self.found && !named).then_some(first)
+        (first < self.found && !self.is_named(first)).then_some(first)
     }
 
     fn reserved_word(&self) -> Option<SyntaxError> {
@@ -277,7 +471,24 @@ impl Failure<'_> {
             "(" if self.opener().is_some_and(|open| open > 0 && self.token(Some(open - 1)) == "system") => {
                 "an instance has a name: `car = Car(...)`"
             }
-            "=" if self.fits(Rule::kw_to) => "a setting has no sign: `tolerance 1e-6`",
+            "=" | ":" | ":=" if self.place() == Place::Run && self.is_word(self.found - 1) => {
+                let value = self.token(Some(self.found + 1));
+                return Some(format!("a setting has no sign: `{} {value}`", self.before(1)));
+            }
+            "[" if self.fits(Rule::colon) && (self.fits(Rule::equals) || self.in_parentheses()) => {
+                let rest = &self.source.text[self.span().range().start..];
+                let unit = rest.find(']').map_or("[m]", |end| &rest[..=end]);
+                return Some(format!("a unit follows a type: `{}: real {unit}`", self.before(1)));
+            }
+            ")" | "," | "=" if self.fitting == [Rule::colon] => {
+                let head = self.opener().and_then(|open| open.checked_sub(2));
+                let ty = if self.token(head) == "interaction" { "Car" } else { "real" };
+                return Some(format!("a parameter has a type: `{}: {ty}`", self.before(1)));
+            }
+            "if" if self.fits(Rule::operator) => "in an expression write `if c then a else b`",
+            "else" if self.fits(Rule::open_brace) || self.fits(Rule::actions) => {
+                "in an expression write `if c then a else b`"
+            }
             "," if self.fits(Rule::close_brace) => "statements need no separator",
             "not" => "put the condition in parentheses: `(not p)`",
             ":=" => "actions stand in braces: `{ x := 3 }`",

@@ -10,6 +10,7 @@ mod scan;
 mod nesting;
 mod grammar;
 mod words;
+mod foreign;
 mod expected;
 mod statements;
 mod slices;

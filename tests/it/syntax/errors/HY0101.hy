@@ -78,4 +78,26 @@ let x = 3; y = 4
 // ----
 agent A { entry x := 3 }
 // ----
-function f(x: real) = 3
+system { a = new A() }
+// ----
+agent A { when x > 1 { create new B(v = 3) } }
+// ----
+let y = 1 if c else 2
+// ----
+agent A { when x > 1 { x := 1 if x > 3 else 2 } }
+// ----
+fn f(x) = x
+// ----
+agent A(v = 3) { }
+// ----
+interaction I(a, b) { }
+// ----
+run { until: 1 }
+// ----
+run { until = 1 }
+// ----
+run { tolerance: 1e-6 }
+// ----
+agent A { state x [m/s] = 3 }
+// ----
+param k [m] = 3

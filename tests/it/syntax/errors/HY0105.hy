@@ -10,3 +10,5 @@ let größe = 3
 let x = a ≤ b
 // ----
 let x = “text”
+// ----
+let y = c ? a : b

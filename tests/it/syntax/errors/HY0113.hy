@@ -15,3 +15,7 @@ system { a = Car(v := 3) }
 param x == 3
 // ----
 agent A { flow { x' = v y = 3 } }
+// ----
+run { stop when x = 3 }
+// ----
+let y = if x = 3 then 1 else 2
