@@ -65,7 +65,7 @@ impl<'a> Context<'a> {
     ) -> Value {
         let ast::ExprKind::Name(name) = &callee.kind else {
             let title = "only functions can be called, by their name".to_string();
-            self.report(NameError::NotAFunction { title, span: callee.span, similar: None });
+            self.report(NameError::NotAFunction { title, span: callee.span });
             return self.wrong(span);
         };
         if let Some(&(_, op, gives)) = FUNCTIONS.iter().find(|(known, _, _)| known == name) {
@@ -95,7 +95,7 @@ impl<'a> Context<'a> {
                 Meaning::Failed => self.wrong(span),
                 Meaning::Number(..) | Meaning::Text(_) | Meaning::Shared(_) | Meaning::Let(..) => {
                     let title = format!("`{name}` is not a function");
-                    self.report(NameError::NotAFunction { title, span: callee.span, similar: None });
+                    self.report(NameError::NotAFunction { title, span: callee.span });
                     self.wrong(span)
                 }
             },
@@ -109,8 +109,7 @@ impl<'a> Context<'a> {
             let own = self.definitions.iter().filter(|definition| definition.is_function());
             let own = own.map(|definition| definition.name.text.as_str());
             let similar = closest(name, functions.chain(["clamp", "rising", "crossing"]).chain(own));
-            let title = format!("there is no function `{name}`");
-            self.report(NameError::NotAFunction { title, span, similar });
+            self.report(NameError::UnknownFunction { name: name.to_string(), span, similar });
         }
         self.wrong(span)
     }

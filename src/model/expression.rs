@@ -120,8 +120,16 @@ impl<'a> Context<'a> {
             let text = self.sources.text(span).to_string();
             self.report(TypeError::RealToInt { what, span, text });
         } else {
-            let help = matches!((want, value.ty), (Ty::Agent(wanted), Ty::Link(found)) if wanted == found)
-                .then(|| "declare a `link` instead, which may be none".to_string());
+            let help = match (want, value.ty) {
+                (Ty::Agent(wanted), Ty::Link(found)) if wanted == found => {
+                    Some("declare a `link` instead, which may be none")
+                }
+                (Ty::Real | Ty::Int, Ty::Bool) => Some(
+                    "declare what is true or false as a `bool`, `q: bool`; as a number it is `if c then 1 else 0`",
+                ),
+                _ => None,
+            };
+            let help = help.map(String::from);
             let (expected, found) = (want.describe_needed(&self.model.types), self.describe(value.ty));
             self.report(TypeError::Mismatch { what, expected, found, span, help });
         }
@@ -168,7 +176,9 @@ impl<'a> Context<'a> {
             let ty = if text.contains(['.', 'e', 'E']) { Ty::Real } else { Ty::Int };
             return self.bare_number(value, ty, span);
         };
-        let unit = Slot { ty: Ty::Real, unit: Some(self.unit(unit)), place: Some(span) };
+        // Of a number in a unit that is none nothing else is said.
+        let Some(unit) = self.unit(unit) else { return self.wrong(span) };
+        let unit = Slot { ty: Ty::Real, unit: Some(unit), place: Some(span) };
         let number = self.declared_number(value, unit, span);
         self.quantities.insert(number.id, unit.quantity());
         number

@@ -180,7 +180,10 @@ impl<'a> Context<'a> {
                     }
                     let (array, count, instance) =
                         (target.name.clone(), target.count, instance_name(block, index));
-                    let error = SystemError::OutOfRange { array, count, index: place, instance, span: *span };
+                    let help = "for those at the end write `if index >= 1 then cars[index - 1] else none`"
+                        .to_string();
+                    let (index, span) = (place, *span);
+                    let error = SystemError::OutOfRange { array, count, index, instance, help, span };
                     return Err(Box::new(error.into()));
                 }
             }

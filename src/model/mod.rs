@@ -15,6 +15,7 @@ pub mod ir;
 mod access;
 mod configuration;
 mod suggest;
+mod foreign;
 mod dimension;
 mod measure;
 mod units;
@@ -63,11 +64,13 @@ mod origin;
 mod formula;
 mod dump;
 mod diagram;
+mod shared;
 mod lint;
 
 pub use diagram::{Arrow, Diagram, ModeBox, diagrams};
 pub use dump::dump;
 pub use ir::Model;
+pub use shared::shared_places;
 
 use crate::base::{Diagnostic, FileId, SourceMap};
 use crate::syntax::Ast;

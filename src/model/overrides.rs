@@ -47,6 +47,7 @@ impl Context<'_> {
         };
         if number.is_none() {
             let span = self.command_line(&format!("-p {}=", name.text), &text);
+            let expected = if text.contains('[') { "a bare number, in its declared unit" } else { expected };
             self.report(OverrideError::Bad { name: name.text.clone(), expected, span, declared: name.span });
         }
         number.map(Given::Number)

@@ -131,7 +131,12 @@ impl<'a> Context<'a> {
             choice.agents.push(first + place as usize);
         } else if !self.has_errors() {
             let instance = "record".to_string();
-            self.report(SystemError::OutOfRange { array, count, index: place, instance, span: index.span });
+            let help = match count {
+                0 => format!("create agents in `{array}`, or record a type: all its agents"),
+                _ => format!("the last one is `{array}[{}]`; `{array}` alone is all of them", count - 1),
+            };
+            let (index, span) = (place, index.span);
+            self.report(SystemError::OutOfRange { array, count, index, instance, help, span });
         }
         Some(ty)
     }

@@ -64,7 +64,7 @@ impl<'a> Context<'a> {
             Some(&Global { kind: GlobalKind::Definition(number), .. }) => {
                 self.lower_definition(number, name, span)
             }
-            Some(global) => self.not_a_value(global.kind, name, span),
+            Some(global) => self.not_a_value(scope.home, global.kind, name, span),
             None => self.unknown_name(scope, name, span),
         }
     }
@@ -141,7 +141,7 @@ impl<'a> Context<'a> {
             Meaning::Text(_) => self.number(0.0, Ty::Text, span),
             Meaning::Shared(value) => value,
             Meaning::Function(_) => {
-                let help = "call it: write its arguments in parentheses";
+                let help = "call it: write its arguments in parentheses".to_string();
                 self.report(NameError::NotAValue { name: name.to_string(), what: "a function", span, help });
                 self.wrong(span)
             }
@@ -149,15 +149,24 @@ impl<'a> Context<'a> {
         }
     }
 
-    fn not_a_value(&mut self, kind: GlobalKind, name: &str, span: Span) -> Value {
+    fn not_a_value(&mut self, home: Home, kind: GlobalKind, name: &str, span: Span) -> Value {
+        let watches = matches!(home, Home::Agent(ty, _) if self.is_watcher(ty));
         let (what, help) = match kind {
-            GlobalKind::Agent(_) => ("an agent type", "bind one of its agents: `exists o in other Car: ...`"),
+            GlobalKind::Agent(_) => {
+                ("an agent type", format!("bind one of its agents: `exists o in other {name}: ...`"))
+            }
             GlobalKind::Interaction => {
-                ("an interaction", "interactions happen by themselves; nothing refers to them")
+                ("an interaction", "interactions happen by themselves; nothing refers to them".to_string())
             }
-            GlobalKind::Instance | GlobalKind::Definition(_) => {
-                ("a name of `system`", "hand the agent over as an argument of agent type, or by a `link`")
+            GlobalKind::Instance if watches => {
+                let help =
+                    format!("bind its agents: `forall o in {name}: o.x > 0`, or `exists o in {name}: ...`");
+                ("a name of `system`", help)
             }
+            GlobalKind::Instance | GlobalKind::Definition(_) => (
+                "a name of `system`",
+                "hand the agent over as an argument of agent type, or by a `link`".to_string(),
+            ),
         };
         self.report(NameError::NotAValue { name: name.to_string(), what, span, help });
         self.wrong(span)
@@ -244,7 +253,7 @@ impl<'a> Context<'a> {
             },
             Member::Twice => return self.wrong(span),
             Member::Event(_) => {
-                let help = "events are sent by `emit` and received by `on`";
+                let help = "events are sent by `emit` and received by `on`".to_string();
                 self.report(NameError::NotAValue { name: name.to_string(), what: "an event", span, help });
                 return self.wrong(span);
             }

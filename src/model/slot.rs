@@ -46,15 +46,16 @@ impl Context<'_> {
         if !matches!(ty, Ty::Real | Ty::Wrong) {
             self.report(TypeError::UnitOnType { ty: item.name.text.clone(), span: text.span });
         }
-        Slot { ty, unit: Some(self.unit(text)), place: Some(text.span) }
+        match self.unit(text) {
+            Some(unit) => Slot { ty, unit: Some(unit), place: Some(text.span) },
+            None => Slot::plain(ty),
+        }
     }
 
-    /// A unit; one, and a diagnostic, if the text is none.
-    pub fn unit(&mut self, item: &ast::UnitText) -> Unit {
-        units::parse(&item.text).unwrap_or_else(|problem| {
-            self.report(TypeError::Unit { problem, span: item.span });
-            Unit::ONE
-        })
+    /// A unit; none, and a diagnostic, if the text is none.
+    pub fn unit(&mut self, item: &ast::UnitText) -> Option<Unit> {
+        let unit = units::parse(&item.text);
+        unit.map_err(|problem| self.report(TypeError::Unit { problem, span: item.span })).ok()
     }
 
     /// Refuses a text where only parameters of the file may be one.

@@ -5,8 +5,8 @@ use std::cmp::Reverse;
 /// Among more names than these nothing is suggested: it would take longer than all else.
 const CANDIDATES_MAX: usize = 2_000;
 
-/// The closest of the candidates, if it is close enough to be what was meant; of two the one that begins alike,
-/// then the first in the alphabet.
+/// The closest of the candidates, if it is close enough to be what was meant; of two the one that begins alike, then the one with
+/// fewer other capitals, then the first in the alphabet.
 pub(super) fn closest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<String> {
     let candidates = candidates.into_iter();
     if candidates.size_hint().0 > CANDIDATES_MAX {
@@ -20,12 +20,15 @@ pub(super) fn closest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c s
     candidates
         .into_iter()
         .filter(|candidate| *candidate != name)
-        .map(|candidate| (distance(name, candidate), Reverse(begin_alike(name, candidate)), candidate))
-        .filter(|(distance, _, candidate)| {
+        .map(|candidate| {
+            let alike = Reverse(begin_alike(name, candidate));
+            (distance(name, candidate), alike, strsim::osa_distance(name, candidate), candidate)
+        })
+        .filter(|(distance, _, _, candidate)| {
             *distance <= allowed && *distance < candidate.chars().count().max(1)
         })
         .min()
-        .map(|(_, _, candidate)| candidate.to_string())
+        .map(|(_, _, _, candidate)| candidate.to_string())
 }
 
 /// How many letters two names share at their beginning.
@@ -48,6 +51,7 @@ mod tests {
         assert_eq!(closest("raod", ["road", "len", "lanes"]), Some("road".to_string()));
         assert_eq!(closest("car", ["Car", "cars"]), Some("Car".to_string()));
         assert_eq!(closest("sinn", ["sign", "sin"]), Some("sin".to_string()));
+        assert_eq!(closest("Km", ["kM", "km"]), Some("km".to_string()));
         assert_eq!(closest("z", ["x", "y"]), None);
         assert_eq!(closest("velocity", ["v", "x"]), None);
     }

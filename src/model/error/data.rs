@@ -1,7 +1,8 @@
 //! Failures of constants, of the command line's values, of `system` with its data files, of `run`; and the limits.
 
-use super::{with_similar, with_similar_or};
+use super::{advised, with_similar, with_similar_or};
 use crate::base::{Diagnostic, Span};
+use crate::model::foreign;
 
 /// What is wrong with a value from the command line.
 pub(in crate::model) enum OverrideError {
@@ -98,7 +99,7 @@ pub(in crate::model) enum SystemError {
     /// Two values for one variable.
     GivenTwice { name: String, span: Span, first: Span, help: &'static str },
     /// An index beyond its array.
-    OutOfRange { array: String, count: usize, index: f64, instance: String, span: Span },
+    OutOfRange { array: String, count: usize, index: f64, instance: String, help: String, span: Span },
     /// A parameter of agent type that turns out to be none.
     RequiredNone { name: String, instance: String, span: Span },
     /// `Car[]` without a data file.
@@ -142,11 +143,11 @@ impl From<SystemError> for Diagnostic {
                     .label(first, "the first time")
                     .help(help)
             }
-            SystemError::OutOfRange { array, count, index, instance, span } => {
+            SystemError::OutOfRange { array, count, index, instance, help, span } => {
                 let title = format!("`{array}[{index}]` does not exist, for `{instance}`");
                 Diagnostic::error("HY0269", title)
                     .label(span, format!("`{array}` has {count} agents, numbered from 0"))
-                    .help("for those at the end write `if index >= 1 then cars[index - 1] else none`")
+                    .help(help)
             }
             SystemError::RequiredNone { name, instance, span } => {
                 Diagnostic::error("HY0270", format!("`{name}` of `{instance}` is none"))
@@ -380,12 +381,12 @@ pub(in crate::model) enum RunError {
 impl From<RunError> for Diagnostic {
     fn from(error: RunError) -> Self {
         match error {
-            RunError::Unknown { name, span, similar } => with_similar_or(
-                Diagnostic::error("HY0280", format!("`run` has no setting `{name}`"))
-                    .label(span, "not known"),
-                &similar,
-                "among the settings are `until`, `tolerance`, `seed`, `record` and `events`",
-            ),
+            RunError::Unknown { name, span, similar } => {
+                let unknown = Diagnostic::error("HY0280", format!("`run` has no setting `{name}`"))
+                    .label(span, "not known")
+                    .help("among the settings are `until`, `tolerance`, `seed`, `record` and `events`");
+                advised(unknown, &name, foreign::setting(&name), &similar)
+            }
             RunError::StepSize { name, span } => {
                 Diagnostic::error("HY0280", format!("a model contains no step size, and so no `{name}`"))
                     .label(span, "steps are the engine's")

@@ -29,6 +29,21 @@ fn with_similar_or(diagnostic: Diagnostic, similar: &Option<String>, help: impl 
     if similar.is_some() { with_similar(diagnostic, similar) } else { diagnostic.help(help) }
 }
 
+/// What to write for the name of something in another language, unless what is meant differs from it in capitals only; else the name
+/// that is like it, if one is.
+fn advised(
+    diagnostic: Diagnostic,
+    name: &str,
+    foreign: Option<&'static str>,
+    similar: &Option<String>,
+) -> Diagnostic {
+    let is_same = similar.as_ref().is_some_and(|similar| similar.eq_ignore_ascii_case(name));
+    match foreign {
+        Some(help) if !is_same => diagnostic.help(help),
+        Some(_) | None => with_similar(diagnostic, similar),
+    }
+}
+
 /// "did you mean", as a help.
 fn with_similar(diagnostic: Diagnostic, similar: &Option<String>) -> Diagnostic {
     match similar {

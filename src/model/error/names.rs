@@ -1,7 +1,8 @@
 //! Failures of names: unknown, taken, circular, or out of place.
 
-use super::{with_similar, with_similar_or};
+use super::{advised, with_similar_or};
 use crate::base::{Diagnostic, Span};
+use crate::model::foreign;
 
 /// A name that cannot be used as it is.
 pub(in crate::model) enum NameError {
@@ -20,9 +21,11 @@ pub(in crate::model) enum NameError {
     /// Functions that call each other.
     Recursion { names: Vec<(String, Span)> },
     /// A name that stands for something without a value.
-    NotAValue { name: String, what: &'static str, span: Span, help: &'static str },
+    NotAValue { name: String, what: &'static str, span: Span, help: String },
     /// Something that cannot be called.
-    NotAFunction { title: String, span: Span, similar: Option<String> },
+    NotAFunction { title: String, span: Span },
+    /// Nothing that can be called has this name.
+    UnknownFunction { name: String, span: Span, similar: Option<String> },
     /// A parameter without a default behind one that has one.
     DefaultsLast { name: String, span: Span },
     /// A name that has no meaning in this place.
@@ -34,22 +37,19 @@ pub(in crate::model) enum NameError {
 impl From<NameError> for Diagnostic {
     fn from(error: NameError) -> Self {
         match error {
-            NameError::Unknown { what, name, span, similar } => with_similar_or(
-                Diagnostic::error("HY0201", format!("there is no {what} `{name}`"))
-                    .label(span, "not known here"),
-                &similar,
-                format!(
+            NameError::Unknown { what, name, span, similar } => {
+                let unknown = Diagnostic::error("HY0201", format!("there is no {what} `{name}`"))
+                    .label(span, "not known here");
+                let otherwise = format!(
                     "declare `{name}`, or look where it is declared: what stands in an agent is known there only"
-                ),
-            ),
+                );
+                advised(unknown.help(otherwise), &name, foreign::value(&name), &similar)
+            }
             NameError::UnknownType { name, span, similar } => {
                 let unknown = Diagnostic::error("HY0202", format!("there is no type `{name}`"))
                     .label(span, "neither `real`, `int`, `bool` nor an agent type");
-                with_similar_or(
-                    unknown,
-                    &similar,
-                    format!("declare `agent {name} {{ }}`, or import the file that does"),
-                )
+                let otherwise = format!("declare `agent {name} {{ }}`, or import the file that does");
+                advised(unknown.help(otherwise), &name, foreign::ty(&name), &similar)
             }
             NameError::NoMember { name, agent, span, similar, mode } => {
                 let title = format!("agent `{agent}` has no `{name}`");
@@ -87,8 +87,13 @@ impl From<NameError> for Diagnostic {
                     .label(span, what)
                     .help(help)
             }
-            NameError::NotAFunction { title, span, similar } => {
-                with_similar(Diagnostic::error("HY0212", title).label(span, "called here"), &similar)
+            NameError::NotAFunction { title, span } => {
+                Diagnostic::error("HY0212", title).label(span, "called here")
+            }
+            NameError::UnknownFunction { name, span, similar } => {
+                let title = format!("there is no function `{name}`");
+                let unknown = Diagnostic::error("HY0212", title).label(span, "called here");
+                advised(unknown, &name, foreign::function(&name), &similar)
             }
             NameError::DefaultsLast { name, span } => {
                 Diagnostic::error("HY0213", format!("`{name}` has no default, but the one before it has"))

@@ -13,6 +13,7 @@ mod settled;
 mod repeated;
 mod lookalike;
 mod beside;
+mod idle;
 
 use super::context::Context;
 use super::ir::{ExprId, Model, Transition, Trigger};
@@ -33,6 +34,8 @@ pub(super) fn lint(context: &mut Context) -> Vec<Diagnostic> {
     unused::members(context, &mut found);
     unused::bound(context, &mut found);
     events::idle(context, &mut found);
+    idle::run(context, &mut found);
+    idle::effects(context, &mut found);
     births::unset_links(context, &mut found);
     births::endless(context, &mut found);
     unreached::modes(context, &mut found);

@@ -12,6 +12,10 @@ pub(super) enum Warning {
     IdleEvent { name: String, agent: String, span: Span, emitted: bool, heard: bool },
     /// An agent type of which `system` makes no agent.
     NoAgents { name: String, span: Span },
+    /// A run of a model without agents; the name of an agent type.
+    NobodyRuns { ty: Option<String>, span: Span },
+    /// A transition that changes nothing and has no name.
+    NoEffect { span: Span },
     /// A link that nothing sets.
     NeverSet { name: String, agent: String, span: Span },
     /// An agent that makes another one of its type as it begins.
@@ -58,6 +62,17 @@ impl From<Warning> for Diagnostic {
                     .label(span, format!("an event of `{agent}`"))
                     .help(format!("{help}, or call it `_{name}` if that is how it should be"))
             }
+            Warning::NobodyRuns { ty, span } => {
+                let ty = ty.unwrap_or_else(|| "Car".to_string());
+                Diagnostic::warning("HY0624", "there are no agents to run")
+                    .label(span, "this runs nothing")
+                    .help(format!("make agents: `system {{ a = {ty}() }}`"))
+            }
+            Warning::NoEffect { span } => Diagnostic::warning("HY0625", "this transition changes nothing")
+                .label(span, "no target, no actions, and no label to find it by in the event log")
+                .help(
+                    "add a target `-> B` or actions `{ ... }`; a label marks an instant: `seen: when x > 1`",
+                ),
             Warning::NoAgents { name, span } => {
                 Diagnostic::warning("HY0603", format!("there are no agents of type `{name}`"))
                     .label(span, "`system` makes none of these")
