@@ -16,7 +16,8 @@ const MODEL: &str = include_str!("new_model.hy");
 pub(super) fn new(arguments: &NewArguments) -> Result<Exit, Refused> {
     let name = arguments.name.strip_suffix(".hy").unwrap_or(&arguments.name);
     let path = PathBuf::from(format!("{name}.hy"));
-    let stem = path.file_stem().filter(|_| !name.is_empty() && !name.ends_with(['/', '\\']));
+    let is_name = !name.is_empty() && !name.ends_with(['/', '\\', '.']);
+    let stem = path.file_stem().filter(|_| is_name);
     let stem = stem.and_then(|stem| stem.to_str()).ok_or("a name is needed: `hyc new robots`")?;
     let shown = path.display();
     let text = MODEL.replace("NAME", stem);
@@ -26,10 +27,17 @@ pub(super) fn new(arguments: &NewArguments) -> Result<Exit, Refused> {
             _ => format!("cannot write `{shown}`: {}", reason(&error)),
         },
     )?;
+    let typed = quoted(&shown.to_string());
     say(&format!(
         "wrote {shown}, a model that runs:\n\
-         \x20 hyc run {shown}      simulate it\n\
-         \x20 hyc report {shown}   simulate it, and write {stem}.html: open that in a browser\n"
+         \x20 hyc run {typed}      simulate it\n\
+         \x20 hyc report {typed}   simulate it, and write {stem}.html: open that in a browser\n"
     ))?;
     Ok(Exit::Fine)
+}
+
+/// A word as it is typed: between quotes, if a shell would take it for several or for something else.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "/\\.:_-+@%,".contains(c);
+    if word.chars().all(is_plain) { word.into() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }

@@ -52,9 +52,16 @@ fn a_new_model_overwrites_nothing() {
     assert_eq!(made.status.code(), Some(2));
     assert!(err(&made).contains("`mine.hy` is there already"), "{}", err(&made));
     assert_eq!(fs::read_to_string(folder.path().join("mine.hy")).unwrap(), "mine");
-    for name in ["", "a/", "no/such/folder/x"] {
+    for name in ["", "a/", ".", "..", "no/such/folder/x"] {
         assert_eq!(hyc(folder.path(), &["new", name]).status.code(), Some(2), "{name}");
     }
+}
+
+#[test]
+fn what_is_to_be_typed_for_a_new_model_can_be_typed() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = out(&hyc(folder.path(), &["new", "1 2"]));
+    assert!(made.contains("hyc run '1 2.hy' ") && made.contains("hyc report '1 2.hy' "), "{made}");
 }
 
 #[test]
@@ -107,4 +114,41 @@ fn colours_are_there_when_they_are_wanted_and_only_then() {
     assert!(coloured(&check, &[("CLICOLOR_FORCE", "1"), ("NO_COLOR", "")]));
     assert!(coloured(&["check", "bad.hy", "--color", "always"], &[("NO_COLOR", "1")]));
     assert!(!coloured(&["--color=never", "check", "bad.hy"], &[("CLICOLOR_FORCE", "1")]));
+}
+
+/// One firing is one event, however many rows it has in the log and however it is told.
+#[test]
+fn the_events_of_a_summary_are_the_sum_of_its_bars() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("loop.hy"),
+        "agent A { state x = 0  flow { x' = 1 }
+           initial mode P { a: when x >= 1 -> Q }  mode Q { b: when x >= 1 -> P } }
+         system { a = A() }  run { until 2 }",
+    )
+    .unwrap();
+    hyc(folder.path(), &["new", "robots"]);
+    for (model, code) in [("robots.hy", 0), ("loop.hy", 3)] {
+        let words = ["run", model, "--stats", "s.json", "--events", "e.csv"];
+        let run = hyc(folder.path(), &words);
+        assert_eq!(run.status.code(), Some(code), "{}", err(&run));
+        let stats: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(folder.path().join("s.json")).unwrap()).unwrap();
+        let sum = |name: &str, of: &dyn Fn(&serde_json::Value) -> u64| -> u64 {
+            stats[name].as_object().unwrap().values().map(of).sum()
+        };
+        let events = stats["events"].as_u64().unwrap();
+        assert_eq!(sum("transitions", &|count| count.as_u64().unwrap()), events);
+        assert_eq!(sum("types", &|ty| ty["events"].as_u64().unwrap()), events);
+        assert!(out(&run).contains(&format!(" {events} events,")), "{}", out(&run));
+        let rows = fs::read_to_string(folder.path().join("e.csv")).unwrap().lines().count() as u64 - 1;
+        if model == "robots.hy" {
+            // both robots of a pair change their modes: two rows of one event, which is one event of each
+            let pairs = stats["transitions"]["Meet.pair"].as_u64().unwrap();
+            assert!(pairs > 0 && rows == events + pairs, "{rows} rows, {events} events, {pairs} pairs");
+            assert_eq!(sum("busiest_agents", &|count| count.as_u64().unwrap()), events + pairs);
+        } else {
+            assert_eq!((rows, events), (2000, 2000));
+        }
+    }
 }
