@@ -83,7 +83,7 @@ pub(super) struct SettingArguments {
     #[arg(long, value_name = "E", value_parser = finite_positive)]
     pub(super) absolute: Option<f64>,
     /// Seed of all random draws
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(super) seed: Option<u64>,
 }
 
@@ -166,6 +166,9 @@ pub(super) struct OutputArguments {
     /// What becomes of the files that run { } names
     #[arg(skip)]
     pub(super) named: Outputs,
+    /// What the page shows across and up
+    #[arg(skip)]
+    pub(super) xy: Vec<String>,
 }
 
 /// What becomes of the files that `run { }` names.
@@ -190,6 +193,9 @@ pub(super) struct ReportArguments {
     /// Where the page goes; in the current folder, with the model's name, if not given
     #[arg(short = 'o', long = "out", value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
+    /// What the plane of the page shows across and up at first: two variables, or `time` and one
+    #[arg(long, value_name = "X,Y", value_delimiter = ',')]
+    pub(super) xy: Vec<String>,
     /// Leave out warnings of this code (repeatable)
     #[arg(long, value_name = "CODE")]
     pub(super) allow: Vec<String>,
@@ -200,7 +206,7 @@ pub(super) struct ReportArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct PlotArguments {
-    /// A trajectory, an event log, or a model
+    /// A trajectory, an event log, or a model; `-` is a table on standard input
     #[arg(value_name = "RUN.csv|MODEL.hy")]
     pub(super) input: PathBuf,
     #[command(flatten)]

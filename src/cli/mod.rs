@@ -20,6 +20,8 @@ mod refusal;
 mod algorithm;
 mod landmarks;
 mod watch;
+mod film;
+mod texts;
 mod run;
 mod report;
 mod plot;

@@ -28,16 +28,16 @@ impl OutputFiles {
         sinks: &mut Sinks,
     ) -> Result<Self, Refused> {
         let mut open = |path: Option<&Path>| path.map(|path| sinks.open(path)).transpose();
-        let page = open(wanted.report.as_deref())?;
+        let page = open(wanted.report.as_deref().map(of_page).transpose()?)?;
         let folder = prepare_folder(wanted.folder.as_deref())?;
         let named = wanted.named == Outputs::Written;
         let of_model = program.run.events.as_ref().filter(|_| named).map(|file| folder.join(file));
-        let events = open(wanted.events.clone().or(of_model).as_deref())?;
+        let events = open(wanted.events.clone().or(of_model).as_deref().map(of_table).transpose()?)?;
         let mut records = Vec::new();
         for path in record_paths(wanted, program, &folder)? {
-            records.extend(open(Some(&path))?);
+            records.extend(open(Some(of_table(&path)?))?);
         }
-        let final_states = open(wanted.final_states.as_deref())?;
+        let final_states = open(wanted.final_states.as_deref().map(of_table).transpose()?)?;
         let explanations = open(wanted.explain_events.as_deref())?;
         let statistics = open(wanted.stats.as_deref())?;
         sinks.empty()?;
@@ -70,6 +70,37 @@ impl OutputFiles {
         begin().map_err(|error: std::io::Error| error.to_string())?;
         Ok((tables, Whole { statistics: self.statistics, page: self.page }))
     }
+}
+
+/// Endings of files that are something else than a table of text; what hyc writes there would be taken for it.
+const NO_TABLE: [&str; 25] = [
+    "gz", "zst", "bz2", "xz", "zip", "tsv", "json", "jsonl", "ndjson", "xml", "yaml", "xls", "xlsx", "ods",
+    "h5", "hdf5", "nc", "mat", "npy", "npz", "sqlite", "db", "html", "svg", "png",
+];
+
+/// The path of a table, unless its ending promises what is not written there.
+fn of_table(path: &Path) -> Result<&Path, Refused> {
+    match ending(path) {
+        Some(ending) if NO_TABLE.contains(&ending.as_str()) => Err(format!(
+            "`{}`: tables are `.csv`, `.arrow` (or `.feather`), `.arrows` or `.parquet`",
+            path.display()
+        )),
+        Some(_) | None => Ok(path),
+    }
+}
+
+/// The path of a page, unless it ends like something else.
+fn of_page(path: &Path) -> Result<&Path, Refused> {
+    match ending(path) {
+        Some(ending) if !matches!(ending.as_str(), "html" | "htm" | "xhtml") => {
+            Err(format!("`{}`: a page is `.html`", path.display()))
+        }
+        Some(_) | None => Ok(path),
+    }
+}
+
+fn ending(path: &Path) -> Option<String> {
+    path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase)
 }
 
 /// What is written in one piece when the run is over.

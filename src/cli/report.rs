@@ -7,9 +7,10 @@ use super::{Exit, Refused, run};
 
 /// Runs the model for its page alone: the files that it names are not written.
 pub(super) fn report(arguments: ReportArguments) -> Result<Exit, Refused> {
-    let ReportArguments { model, settings, engine, out, allow, quiet } = arguments;
+    let ReportArguments { model, settings, engine, out, xy, allow, quiet } = arguments;
     let page =
         out.unwrap_or_else(|| PathBuf::from(model.file_stem().unwrap_or_default()).with_extension("html"));
-    let outputs = OutputArguments { report: Some(page), named: Outputs::Left, ..OutputArguments::default() };
+    let named = Outputs::Left;
+    let outputs = OutputArguments { report: Some(page), named, xy, ..OutputArguments::default() };
     run::run(&RunArguments { model, settings, engine, outputs, asserts: Default::default(), allow, quiet })
 }

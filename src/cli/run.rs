@@ -1,11 +1,13 @@
 //! `hyc run`: a model through every floor, then what became of it.
 
+use std::io;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use super::algorithm::{Computed, limits_of, single};
 use super::arguments::{AssertLevel, RunArguments, SettingArguments};
+use super::film::Film;
 use super::input::{Loaded, load, name_of};
 use super::limits::Limits;
 use super::outputs::{OutputFiles, kind_of};
@@ -13,8 +15,8 @@ use super::progress::ProgressLine;
 use super::refusal::{refuse_aggregates, refuse_endless};
 use super::sinks::Sinks;
 use super::terminal::{complain, say, say_aside, tell};
+use super::texts::{places, texts};
 use super::warnings::Levels;
-use super::watch::watch;
 use super::{Exit, Refused, claims};
 use crate::base::{Diagnostic, SourceMap};
 use crate::calculus;
@@ -23,8 +25,8 @@ use crate::codegen::{self, Backend};
 use crate::model::ir::Integrator;
 use crate::model::machinery::{BackendName, Named as _};
 use crate::model::{self, Model, Settings};
-use crate::output::{Cast, Report, Sink, Tables, TypeColumns, statistics, summary};
-use crate::picture::{Recording, Scene, page};
+use crate::output::{Cast, Report, Sink, Tables, TypeColumns, statistics, summary, unwritten};
+use crate::picture::{Scene, page};
 use crate::runtime::observe::{End, Outcome};
 use crate::runtime::{self, Algorithm};
 
@@ -32,7 +34,7 @@ use crate::runtime::{self, Algorithm};
 const BUSIEST: usize = 8;
 
 /// Set by the user's interruption.
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+pub(super) static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// Compiles, simulates, writes.
 pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
@@ -72,20 +74,17 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     ];
 
     let cast = cast_of(&program);
+    let diagrams = model::diagrams(&model, &sources);
     let page_wanted = arguments.outputs.report.is_some();
-    let (record, watched) = page_wanted.then(|| watch(&model, &program)).transpose()?.unzip();
+    let mut film = page_wanted.then(|| Film::new(&model, &program, &cast, &diagrams));
+    if let Some(film) = &mut film {
+        film.watched.show(&arguments.outputs.xy)?;
+    }
     let mut sinks = Sinks::new(&inputs);
     let opened = OutputFiles::open(&arguments.outputs, &program, &mut sinks)?;
-    let diagrams = model::diagrams(&model, &sources);
-    let n_records = program.run.records.len();
-    let mut recording = None;
-    if watched.is_some() {
-        recording = Some(Recording::new(&cast, &diagrams, n_records));
-    }
     let (mut tables, whole) = opened.begin(&program, &cast, &sources)?;
-    program.run.records.extend(record);
-    if let Some(recording) = &mut recording {
-        tables.also(recording);
+    if let Some(film) = &mut film {
+        film.begin(&mut program, &mut tables);
     }
     let begun = Instant::now();
     let outcome = simulate(algorithm, &program, &limits.run, &mut tables, arguments.quiet)?;
@@ -94,6 +93,9 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     let (busiest, writing_seconds) = (tables.busiest(BUSIEST), tables.writing().as_secs_f64());
     drop(tables);
 
+    if let Some(film) = &mut film {
+        film.end(algorithm, &mut program, &limits.run, &outcome, &INTERRUPTED);
+    }
     let (functions, code_bytes) = program.machine_code();
     let report = Report {
         model: &name_of(&arguments.model),
@@ -126,13 +128,13 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
         write_whole(sink, &statistics(&report))?;
     }
     let summary = summary(&report);
-    if let (Some(sink), Some(watched), Some(mut recording)) = (whole.page, &watched, recording) {
-        recording.close();
+    if let (Some(sink), Some(Film { watched, recording, .. })) = (whole.page, &film) {
         let scene = Scene {
             title: &name_of(Path::new(arguments.model.file_name().unwrap_or_default())),
-            source: sources.files().first().map_or("", |file| &file.text),
+            texts: &texts(&model, &sources),
+            places: &places(&model, &sources),
             diagrams: &diagrams,
-            recording: &recording,
+            recording,
             columns: &watched.columns,
             plane: watched.plane,
             landmarks: &watched.landmarks,
@@ -140,12 +142,13 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
         };
         write_whole(sink, &page(&scene))?;
     }
-    if !arguments.quiet {
+    let is_left = matches!(&outcome.end, End::Output(error) if is_closed(error));
+    if !arguments.quiet && !is_left {
         if sinks.on_stdout() { say_aside(&summary) } else { say(&summary)? }
     }
     let exit = conclude(&outcome, &sources, arguments.asserts);
     match flushed {
-        Err(error) if !matches!(outcome.end, End::Output(_)) => Err(error.to_string()),
+        Err(error) if !matches!(outcome.end, End::Output(_)) && !is_closed(&error) => Err(error.to_string()),
         Ok(()) | Err(_) => Ok(exit),
     }
 }
@@ -185,7 +188,23 @@ pub(super) fn compile(
     codegen::compile(system, backend).map_err(|diagnostic| vec![diagnostic])
 }
 
-/// Runs until its end or the user's interruption; a second interruption ends the process at once.
+/// Whether nobody reads any more what a run writes, which is no failure.
+fn is_closed(error: &io::Error) -> bool {
+    error.kind() == io::ErrorKind::BrokenPipe
+}
+
+/// Has the user's interruption end a run; a second one ends the process at once.
+pub(super) fn listen() -> Result<&'static AtomicBool, Refused> {
+    let on_interrupt = || {
+        if INTERRUPTED.swap(true, Ordering::SeqCst) {
+            std::process::exit(Exit::Interrupted as i32);
+        }
+    };
+    ctrlc::set_handler(on_interrupt).map_err(|error| format!("cannot listen for interruptions: {error}"))?;
+    Ok(&INTERRUPTED)
+}
+
+/// Runs until its end or the user's interruption.
 pub(super) fn simulate(
     algorithm: Algorithm,
     program: &Program,
@@ -193,18 +212,13 @@ pub(super) fn simulate(
     tables: &mut Tables<'_>,
     quiet: bool,
 ) -> Result<Outcome, Refused> {
-    let on_interrupt = || {
-        if INTERRUPTED.swap(true, Ordering::SeqCst) {
-            std::process::exit(Exit::Interrupted as i32);
-        }
-    };
-    ctrlc::set_handler(on_interrupt).map_err(|error| format!("cannot listen for interruptions: {error}"))?;
+    let interrupt = listen()?;
     let line = std::rc::Rc::new(std::cell::RefCell::new(ProgressLine::new()));
     if !quiet {
         let line = line.clone();
         tables.on_progress(move |progress| line.borrow_mut().show(progress));
     }
-    let outcome = runtime::simulate_by(algorithm, program, limits, &INTERRUPTED, tables);
+    let outcome = runtime::simulate_by(algorithm, program, limits, interrupt, tables);
     line.borrow_mut().clear();
     Ok(outcome)
 }
@@ -216,6 +230,7 @@ pub(super) fn conclude(outcome: &Outcome, sources: &SourceMap, asserts: AssertLe
             tell(sources, std::slice::from_ref(diagnostic));
             Exit::RunError
         }
+        End::Output(error) if is_closed(error) => Exit::Fine,
         End::Output(error) => {
             complain(&error.to_string());
             Exit::Usage
@@ -256,8 +271,8 @@ fn code_of(backend: BackendName) -> &'static str {
 }
 
 fn write_whole(mut sink: Sink, text: &str) -> Result<(), Refused> {
-    sink.writer
-        .write_all(text.as_bytes())
-        .and_then(|()| sink.writer.flush())
-        .map_err(|error| format!("cannot write `{}`: {error}", sink.name))
+    match sink.writer.write_all(text.as_bytes()).and_then(|()| sink.writer.flush()) {
+        Err(error) if !is_closed(&error) => Err(unwritten(&sink.name, &error).to_string()),
+        Ok(()) | Err(_) => Ok(()),
+    }
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::Refused;
 use super::input::reason;
-use crate::output::Sink;
+use crate::output::{STANDARD_OUTPUT, Sink};
 
 /// Opens files for writing, each once, none that the run reads.
 pub(super) struct Sinks {
@@ -39,7 +39,7 @@ impl Sinks {
             if std::mem::replace(&mut self.on_stdout, true) {
                 return Err("two outputs go to standard output".into());
             }
-            return Ok(Sink { name: "standard output".into(), writer: Box::new(io::stdout()) });
+            return Ok(Sink { name: STANDARD_OUTPUT.into(), writer: Box::new(io::stdout()) });
         }
         self.take(path)?;
         let (file, kept, is_new) = open_as_it_is(path).map_err(|error| unwritable(path, &error))?;

@@ -6,7 +6,7 @@
 use std::io::{self, BufWriter, Write};
 
 use super::cast::Cast;
-use super::table::Sink;
+use super::table::{Sink, unwritten};
 use crate::base::{SourceMap, Span, number_text};
 use crate::runtime::observe::{Cause, Compared, Explanation, Undecided, Who, WhyUndecided};
 
@@ -82,7 +82,7 @@ impl<'a> Explanations<'a> {
     }
 
     fn named(&self, error: &io::Error) -> io::Error {
-        io::Error::new(error.kind(), format!("cannot write `{}`: {error}", self.name))
+        unwritten(&self.name, error)
     }
 
     /// `ball.hy:7`

@@ -29,5 +29,5 @@ pub use diagnostic_json::diagnostic_json;
 pub use report::Report;
 pub use statistics::statistics;
 pub use summary::summary;
-pub use table::Sink;
+pub use table::{STANDARD_OUTPUT, Sink, unwritten};
 pub use tables::Tables;

@@ -6,12 +6,21 @@ use super::columnar::{Columnar, Layout};
 use super::columns::Column;
 use super::comma_separated::CommaSeparated;
 
+/// The name of what is no file.
+pub const STANDARD_OUTPUT: &str = "standard output";
+
 /// A place to write to, with the name that messages give it.
 pub struct Sink {
-    /// `events.csv`, `standard output`. What stands behind the last dot says the form of a table.
+    /// `events.csv`, or [`STANDARD_OUTPUT`]. What stands behind the last dot says the form of a table.
     pub name: String,
     /// Where the bytes go; buffered here, so it need not be.
     pub writer: Box<dyn Write + Send>,
+}
+
+/// The same failure, with the name of what could not be written.
+pub fn unwritten(name: &str, error: &io::Error) -> io::Error {
+    let shown = if name == STANDARD_OUTPUT { name.to_string() } else { format!("`{name}`") };
+    io::Error::new(error.kind(), format!("cannot write {shown}: {error}"))
 }
 
 /// A table that grows by rows; each cell is written in its turn.
@@ -35,7 +44,7 @@ impl Table {
                 Columnar::new(layout, writer, columns).map(|table| Form::Columns(Box::new(table)))
             }
         };
-        let form = form.map_err(|error| named(&name, &error))?;
+        let form = form.map_err(|error| unwritten(&name, &error))?;
         Ok(Self { name, form })
     }
 
@@ -91,7 +100,7 @@ impl Table {
             Form::Text(table) => table.end_row(),
             Form::Columns(table) => table.end_row(),
         };
-        done.map_err(|error| named(&self.name, &error))
+        done.map_err(|error| unwritten(&self.name, &error))
     }
 
     /// Hands on the rows so far, as far as the form allows before the end.
@@ -100,7 +109,7 @@ impl Table {
             Form::Text(table) => table.flush(),
             Form::Columns(table) => table.flush(),
         };
-        done.map_err(|error| named(&self.name, &error))
+        done.map_err(|error| unwritten(&self.name, &error))
     }
 
     /// Hands on all rows, and the end of the table.
@@ -109,21 +118,16 @@ impl Table {
             Form::Text(table) => table.flush(),
             Form::Columns(table) => table.finish(),
         };
-        done.map_err(|error| named(&self.name, &error))
+        done.map_err(|error| unwritten(&self.name, &error))
     }
 }
 
-/// `.arrow`, `.arrows`, `.parquet`; everything else is text.
+/// `.arrow` (and `.feather`, which is the same), `.arrows`, `.parquet`; everything else is text.
 fn layout_of(name: &str) -> Option<Layout> {
     match name.rsplit_once('.')?.1.to_ascii_lowercase().as_str() {
         "arrows" => Some(Layout::Stream),
-        "arrow" => Some(Layout::File),
+        "arrow" | "feather" => Some(Layout::File),
         "parquet" => Some(Layout::Parquet),
         _ => None,
     }
-}
-
-/// The same failure, with the name of what could not be written.
-fn named(name: &str, error: &io::Error) -> io::Error {
-    io::Error::new(error.kind(), format!("cannot write `{name}`: {error}"))
 }

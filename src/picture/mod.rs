@@ -15,7 +15,7 @@ mod plot;
 
 pub use modes_dot::modes_dot;
 pub use modes_svg::{Theme, modes_svg};
-pub use page::{Landmarks, Scene, Shown, Varies, page};
+pub use page::{Landmarks, Lines, Scene, Shown, Text, Varies, page};
 pub use plot::{Form, View, plot, ready_font};
 pub use recording::{Happened, Recording, Track};
 pub use traces::{Trace, Traces};

@@ -3,6 +3,8 @@
 //! Samples lie in it as base64 of 32-bit numbers, column by column, agent by agent. Styles and scripts are those of `page/`;
 //! charts are drawn by uPlot, which lies in `page/vendor/` with its licence.
 
+use std::collections::BTreeMap;
+
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
@@ -23,8 +25,10 @@ const UPLOT_STYLE: &str = include_str!("page/vendor/uPlot.min.css");
 pub struct Scene<'a> {
     /// The model's name.
     pub title: &'a str,
-    /// Its text.
-    pub source: &'a str,
+    /// Its files; the first one is its own, the others are those that it imports.
+    pub texts: &'a [Text<'a>],
+    /// Where transitions stand, by their labels.
+    pub places: &'a BTreeMap<String, Lines>,
     /// The modes of its agent types.
     pub diagrams: &'a [Diagram],
     /// What happened; closed.
@@ -57,6 +61,26 @@ pub struct Shown {
     pub unit: Option<String>,
     /// Whether it is worth a chart over time.
     pub varies: Varies,
+    /// Whether all its values are whole numbers.
+    pub is_whole: bool,
+}
+
+/// A file of the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Text<'a> {
+    /// As the user or an `import` names it.
+    pub name: &'a str,
+    /// What stands in it.
+    pub text: &'a str,
+}
+
+/// Lines of a file of the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lines {
+    /// The number of the file.
+    pub file: usize,
+    /// The first and the last one, from 1.
+    pub lines: [usize; 2],
 }
 
 /// Whether a column changes during a run.
@@ -84,12 +108,44 @@ pub fn page(scene: &Scene<'_>) -> String {
             "UPLOT_JS" => html += UPLOT_SCRIPT,
             "JS" => html += SCRIPT,
             "MODES" => html += &modes_svg(scene.diagrams, Theme::Page),
-            "SOURCE" => html += &highlighted(scene.source),
+            "SOURCE" => html += &texts(scene.texts),
             "DATA" => html += &data,
             other => unreachable!("the template has no place called {other}"),
         }
     }
     html
+}
+
+/// The files one below the other, each with a tab if there are several.
+fn texts(texts: &[Text<'_>]) -> String {
+    let mut html = String::new();
+    if texts.len() > 1 {
+        html += "<div class=\"bar\" id=\"tabs\" role=\"tablist\">";
+        for (k, Text { name, .. }) in texts.iter().enumerate() {
+            html += &format!(
+                "<button role=\"tab\" id=\"tab{k}\" aria-controls=\"text{k}\" aria-selected=\"{}\">{}</button>",
+                k == 0,
+                escaped(name)
+            );
+        }
+        html += "</div>";
+    }
+    for (k, Text { name, text }) in texts.iter().enumerate() {
+        let (hidden, name) = (if k == 0 { "" } else { " hidden" }, escaped(name));
+        html +=
+            &format!("<div class=\"text\" id=\"text{k}\" role=\"tabpanel\" aria-label=\"{name}\"{hidden}>");
+        html += &highlighted(text);
+        html += "</div>";
+    }
+    html
+}
+
+/// The file, the first and the last line of a transition; null for what stands nowhere.
+fn place(scene: &Scene<'_>, label: &str) -> Value {
+    match scene.places.get(label) {
+        Some(Lines { file, lines: [first, last] }) => json!([file, first, last]),
+        None => Value::Null,
+    }
 }
 
 fn data(scene: &Scene<'_>) -> Value {
@@ -116,6 +172,7 @@ fn data(scene: &Scene<'_>) -> Value {
         "events": events.collect::<Vec<_>>(),
         "nEvents": recording.n_events,
         "transitions": recording.transitions,
+        "places": recording.transitions.iter().map(|label| place(scene, label)).collect::<Vec<_>>(),
         "modePaths": recording.paths,
         "walls": scene.landmarks.walls,
         "ranges": scene.landmarks.ranges,
@@ -137,7 +194,7 @@ fn column(recording: &Recording<'_>, k: usize, shown: &Shown) -> Value {
         "label": label,
         "length": length,
         "chart": shown.varies == Varies::InTime,
-        "whole": shown.varies == Varies::AmongAgents,
+        "whole": shown.is_whole,
         "values": STANDARD.encode(values.flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>()),
     })
 }

@@ -74,3 +74,56 @@ fn one_file_imported_by_two_spellings_is_imported_once() {
         expect(&hyc(&here, &["check", "b/m.hy"]), 0, &["no errors"]);
     }
 }
+
+#[test]
+fn a_reader_of_an_output_that_goes_away_is_no_error() {
+    use std::process::{Command, Stdio};
+    let model = BALL.replace("until 1 ", "until 1e9 ").replace("v := -0.8*v", "v := -v");
+    let here = folder(&[("ball.hy", &model), ("short.hy", BALL)]);
+    for words in [
+        &["run", "ball.hy", "--events", "-"][..],
+        &["run", "ball.hy", "--record", "-"],
+        &["run", "ball.hy", "--explain-events"],
+        &["run", "short.hy", "--final", "-"],
+        &["run", "short.hy", "--stats", "-"],
+        &["report", "short.hy", "-o", "-", "-q"],
+    ] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hyc"));
+        command.args(words).current_dir(here.path()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{words:?}: {said}");
+        assert!(!said.contains("error") && !said.contains("Broken pipe"), "{words:?}: {said}");
+    }
+}
+
+#[test]
+fn an_ending_that_promises_something_else_is_refused() {
+    let here = folder(&[("ball.hy", BALL)]);
+    for (option, name) in
+        [("--events", "e.csv.gz"), ("--record", "r.json"), ("--final", "f.tsv"), ("--record", "r.XLSX")]
+    {
+        let words = ["run", "ball.hy", option, name];
+        expect(&hyc(&here, &words), 2, &[name, "`.csv`", "`.parquet`"]);
+        assert!(!here.path().join(name).exists());
+    }
+    expect(&hyc(&here, &["run", "ball.hy", "--report", "r.csv"]), 2, &["`r.csv`: a page is `.html`"]);
+    expect(&hyc(&here, &["report", "ball.hy", "-o", "r.svg"]), 2, &["`r.svg`: a page is `.html`"]);
+    let named = BALL.replace("events.csv", "events.json");
+    fs::write(here.path().join("named.hy"), named).unwrap();
+    expect(&hyc(&here, &["run", "named.hy"]), 2, &["events.json"]);
+    // Feather is the file form of Arrow
+    expect(&hyc(&here, &["run", "ball.hy", "-q", "--final", "f.feather", "--record", "r.dat"]), 0, &[]);
+    assert!(fs::read(here.path().join("f.feather")).unwrap().starts_with(b"ARROW1"));
+    assert!(read(&here, "r.dat").starts_with("time,"));
+}
+
+#[test]
+fn values_that_cannot_be_are_refused_with_what_can() {
+    let here = folder(&[("ball.hy", BALL)]);
+    let bare = ["HY0261", "must be a bare number, in its declared unit"];
+    expect(&hyc(&here, &["run", "ball.hy", "-p", "g=10 [m/s^2]"]), 2, &bare);
+    expect(&hyc(&here, &["run", "ball.hy", "--seed", "-1"]), 2, &["invalid value '-1' for '--seed"]);
+}

@@ -121,7 +121,7 @@ fn what_cannot_be_drawn_is_refused_in_words() {
         (&["plot", "table.parquet"], "cannot read `table.parquet`: only tables in CSV are drawn"),
         (&["plot", "other.csv"], "no columns `time` and `agent`"),
         (&["plot", "bad.csv"], "line 2: `soon` is no time"),
-        (&["plot", "walk.csv", "--xy", "x,z"], "no column `z`; there are x; y"),
+        (&["plot", "walk.csv", "--xy", "x,z"], "no column `z`; there are x, y"),
         (&["plot", "walk.csv", "--xy", "x"], "--xy x,y"),
         (&["plot", "walk.csv", "-o", "walk.gif"], "`.svg` or `.png`"),
     ];
@@ -163,4 +163,36 @@ fn a_table_takes_no_setting_of_a_run() {
         assert_eq!(output.status.code(), Some(2), "{option}");
         assert!(String::from_utf8_lossy(&output.stderr).contains("is for a model that is run"), "{option}");
     }
+}
+
+#[test]
+fn a_column_that_is_not_there_is_told_with_those_that_are() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("walk.hy"), MODEL).unwrap();
+    let said = |words: &[&str]| {
+        let output = hyc(folder.path(), words);
+        assert_eq!(output.status.code(), Some(2));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let of_model = said(&["plot", "walk.hy", "--xy", "x,q"]);
+    assert!(of_model.contains("there is no column `q`; there are x, y\n"), "{of_model}");
+    fine(folder.path(), &["run", "walk.hy", "-q"]);
+    let of_log = said(&["plot", "turns.csv", "--columns", "q"]);
+    assert!(of_log.contains("an event log has times and agents only"), "{of_log}");
+}
+
+#[test]
+fn a_table_can_come_through_a_pipe() {
+    use std::io::Write;
+    use std::process::Stdio;
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("walk.hy"), MODEL).unwrap();
+    fine(folder.path(), &["run", "walk.hy", "-q"]);
+    fine(folder.path(), &["plot", "walk.csv"]);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_hyc"));
+    let mut child =
+        command.args(["plot", "-"]).current_dir(folder.path()).stdin(Stdio::piped()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(read(folder.path(), "walk.csv").as_bytes()).unwrap();
+    assert!(child.wait().unwrap().success());
+    assert_eq!(lines(&read(folder.path(), "plot.svg")), lines(&read(folder.path(), "walk.svg")));
 }

@@ -121,19 +121,129 @@ fn a_report_beside_a_run_changes_no_event() {
     }
 }
 
+/// The end of a run that an action stops is not known before it.
 #[test]
-fn a_page_of_a_run_without_an_end_is_refused_with_what_to_type() {
+fn a_page_of_a_run_that_stops_by_itself_goes_up_to_there() {
     let folder = tempfile::tempdir().unwrap();
-    let text =
-        "agent A { state x = 0  flow { x' = 1 }  when x >= 1 { stop } }\nsystem { a = A() }\nrun { }\n";
+    let text = "agent A { state x = 0  flow { x' = 1 }  when x >= 7 { stop \"far enough\" } }\nsystem { a = A() }\nrun { }\n";
     fs::write(folder.path().join("a.hy"), text).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_hyc"))
-        .args(["report", "a.hy"])
+    hyc(folder.path(), &["report", "a.hy"]);
+    let data = data_of(&fs::read_to_string(folder.path().join("a.html")).unwrap());
+    let times: Vec<f64> =
+        data["times"].as_array().unwrap().iter().map(|time| time.as_f64().unwrap()).collect();
+    assert!(times.len() >= 100 && (times.last().unwrap() - 7.0).abs() < 0.1, "{times:?}");
+    assert!(data["ending"].as_str().unwrap().contains("far enough"), "{data}");
+    assert_eq!(data["nEvents"], 1);
+    hyc(
+        folder.path(),
+        &["run", "a.hy", "-q", "--report", "b.html", "--record", "b.csv", "--events", "e.csv"],
+    );
+    assert_eq!(fs::read_to_string(folder.path().join("e.csv")).unwrap().lines().count(), 2);
+    assert_eq!(data_of(&fs::read_to_string(folder.path().join("b.html")).unwrap())["nEvents"], 1);
+    hyc(folder.path(), &["plot", "a.hy"]);
+    assert!(fs::read_to_string(folder.path().join("a.svg")).unwrap().contains("<polyline"));
+    // nothing ends this one
+    fs::write(folder.path().join("a.hy"), text.replace("stop \"far enough\"", "x := 0")).unwrap();
+    for command in ["report", "plot"] {
+        let output = Command::new(env!("CARGO_BIN_EXE_hyc"))
+            .args([command, "a.hy"])
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert!(String::from_utf8_lossy(&output.stderr).contains("the run has no end"));
+    }
+}
+
+/// What the plane of a page shows at first, by name.
+fn plane_of(folder: &Path, words: &[&str]) -> [String; 2] {
+    hyc(folder, &[&["report"], words, &["-q", "-o", "plane.html"]].concat());
+    let data = data_of(&fs::read_to_string(folder.join("plane.html")).unwrap());
+    ["across", "up"].map(|axis| match data[axis].as_i64().unwrap() {
+        -1 => "time".to_string(),
+        column => data["columns"][column as usize]["label"].as_str().unwrap().to_string(),
+    })
+}
+
+#[test]
+fn a_plane_shows_where_agents_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let highway = model("highway.hy");
+    let highway = highway.to_str().unwrap();
+    assert_eq!(plane_of(folder.path(), &[highway, "--until", "5"]), ["x, m", "lane"]);
+    assert_eq!(plane_of(folder.path(), &[highway, "--until", "5", "--xy", "x,v"]), ["x, m", "v, m/s"]);
+    assert_eq!(plane_of(folder.path(), &[highway, "--until", "5", "--xy", "time,x"]), ["time", "x, m"]);
+    let wrong = Command::new(env!("CARGO_BIN_EXE_hyc"))
+        .args(["report", highway, "--xy", "x,w"])
         .current_dir(folder.path())
         .output()
         .unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("--until T"));
+    assert!(!folder.path().join("highway.html").exists(), "nothing is left of what is refused");
+    assert!(String::from_utf8_lossy(&wrong.stderr).contains("no column `w`; there are time, x, v, lane"));
+    for (text, expected) in [
+        // a second place in the unit of the first
+        ("state v: real [m/s] = 1, x: real [m] = 0, z: real [m] = 0  flow { v' = 0  x' = v  z' = v }", ["x, m", "z, m"]),
+        // a floor, for agents that ask who is on theirs
+        (
+            "state x = 0, v = 1  discrete n: int = 0, level: int = index  flow { x' = v  v' = 0 }
+             up: when exists o in other A: o.level == level + 1 and o.x < x { n := n + 1 }",
+            ["x", "level"],
+        ),
+        // a counter says nothing of where an agent is
+        (
+            "state x = 0, v = 1  discrete n: int = 0  flow { x' = v  v' = 0 }
+             turn: when x >= 1 and n == 0 { n := n + 1 }  again: when exists o in other A: o.x > 3 and n == 2 { n := 0 }",
+            ["x", "v"],
+        ),
+    ] {
+        let text = format!("agent A {{ {text} }}\nsystem {{ all = A[3]() }}\nrun {{ until 1 }}\n");
+        fs::write(folder.path().join("a.hy"), text).unwrap();
+        assert_eq!(plane_of(folder.path(), &["a.hy"]), expected);
+    }
+}
+
+#[test]
+fn a_page_shows_the_files_that_a_model_imports() {
+    let folder = tempfile::tempdir().unwrap();
+    imported(folder.path());
+    hyc(folder.path(), &["report", "main.hy", "-q"]);
+    let page = fs::read_to_string(folder.path().join("main.html")).unwrap();
+    let names: Vec<&str> =
+        page.split("role=\"tab\"").skip(1).map(|tab| tab.split(['>', '<']).nth(1).unwrap()).collect();
+    assert_eq!(names, ["main.hy", "cars.hy", "lib.hy"]);
+    let texts: Vec<&str> = page.split("<div class=\"text\"").skip(1).collect();
+    assert!(
+        texts[0].contains("half") && texts[1].contains("leave") && texts[2].contains("road"),
+        "{names:?}"
+    );
+    let data = data_of(&page);
+    let place = |label: &str| {
+        let labels = data["transitions"].as_array().unwrap();
+        data["places"][labels.iter().position(|known| known == label).unwrap()].clone()
+    };
+    assert_eq!(place("Car.leave"), serde_json::json!([1, 5, 7]));
+    assert_eq!(place("Bike.half"), serde_json::json!([0, 2, 2]));
+    // one file needs no tabs
+    hyc(folder.path(), &["report", model("ball.hy").to_str().unwrap(), "-q", "-o", "ball.html"]);
+    assert!(!fs::read_to_string(folder.path().join("ball.html")).unwrap().contains("role=\"tab\""));
+}
+
+/// A model that imports one that imports another.
+fn imported(folder: &Path) {
+    let files = [
+        ("lib.hy", "param road: real [m] = 2\n"),
+        (
+            "cars.hy",
+            "import \"lib.hy\"\nagent Car {\n  state x: real [m] = 0\n  flow { x' = 1 }\n  leave: when x >= road {\n    x := 0\n  }\n}\n",
+        ),
+        (
+            "main.hy",
+            "import \"cars.hy\"\nagent Bike { state x: real [m] = 0  flow { x' = 1 }  half: when x >= road/2 { x := 0 } }\nsystem { car = Car()  bike = Bike() }\nrun { until 3 }\n",
+        ),
+    ];
+    for (name, text) in files {
+        fs::write(folder.join(name), text).unwrap();
+    }
 }
 
 /// What a browser is asked to do on the page; the answers come as JSON in a `pre`.
@@ -159,6 +269,9 @@ addEventListener("load", () => setTimeout(async () => {
     const marked = said.marked; press("n"); said.next = document.querySelector("#events tr.now")?.textContent !== marked;
     $("find").value = row.cells[2].textContent; $("find").dispatchEvent(new Event("input"));
     said.found = document.querySelectorAll("#events tbody tr").length;
+    const place = document.querySelector("#events td.place");
+    if (place) { place.click(); said.place = document.querySelector(".text:not([hidden]) .lines")?.dataset.lines; }
+    said.tabs = document.querySelectorAll("#tabs button").length;
     press("Home"); press(" "); for (let k = 0; k < 30 && +$("time").value <= +$("time").min; k++) await wait(100); press(" ");
     said.played = +$("time").value - +$("time").min;
     press("0"); press("+"); press("t"); press("l"); press("ArrowRight"); press("End"); press("d");
@@ -195,13 +308,12 @@ fn browser() -> Option<String> {
 }
 
 /// What the page of a model does in a browser; none, with a word, where there is no browser.
-fn asked(name: &str, words: &[&str]) -> Option<Value> {
+fn asked(path: &Path, words: &[&str]) -> Option<Value> {
     let Some(browser) = browser() else {
         eprintln!("skipped: no Chromium is installed; HYC_CHROMIUM names one");
         return None;
     };
     let folder = tempfile::tempdir().unwrap();
-    let path = model(name);
     hyc(folder.path(), &[&["report", path.to_str().unwrap(), "-q", "-o", "page.html"], words].concat());
     let page = fs::read_to_string(folder.path().join("page.html")).unwrap();
     let page = page.replacen("<head>", LISTEN, 1);
@@ -228,7 +340,7 @@ fn the_page_works_in_a_browser() {
     for (name, words, n_charts) in
         [("bumper.hy", &[][..], 3), ("highway_static.hy", &["--until", "30"][..], 3), ("ball.hy", &[][..], 2)]
     {
-        let Some(said) = asked(name, words) else { return };
+        let Some(said) = asked(&model(name), words) else { return };
         let number = |key: &str| said[key].as_f64().unwrap_or_else(|| panic!("{name}: no {key} in {said}"));
         assert_eq!(said["errors"], serde_json::json!([]), "{name}: {said}");
         assert_eq!(said["requests"], serde_json::json!([]), "{name}: {said}");
@@ -242,6 +354,17 @@ fn the_page_works_in_a_browser() {
             said["jumped"] == true && said["marked"] == said["clicked"] && said["next"] == true,
             "{name}: {said}"
         );
+        assert!(said["place"].is_string() && number("tabs") == 0.0, "{name}: {said}");
         assert!(number("played") > 0.0 && said["ended"] == true && said["dark"] == "dark", "{name}: {said}");
     }
+}
+
+#[test]
+fn a_transition_is_shown_in_the_file_where_it_stands() {
+    let folder = tempfile::tempdir().unwrap();
+    imported(folder.path());
+    let Some(said) = asked(&folder.path().join("main.hy"), &[]) else { return };
+    assert_eq!(said["errors"], serde_json::json!([]), "{said}");
+    // the first event is that of the bike, in the first file
+    assert_eq!((&said["tabs"], &said["place"]), (&3.into(), &"2-2".into()), "{said}");
 }

@@ -67,7 +67,8 @@ function bounds(column) {
   // walls that are not far away are part of the picture
   const size = high - low || 1;
   for (const [wall, at] of data.walls) if (wall === column && at > low - size && at < high + size) { low = Math.min(low, at); high = Math.max(high, at); }
-  return [low, high];
+  // whole numbers are lanes: there is room beside the outermost
+  return data.columns[column].whole ? [low - 0.5, high + 0.5] : [low, high];
 }
 function fit() {
   const [x0, x1] = bounds(across), [y0, y1] = bounds(up);
@@ -188,6 +189,8 @@ function colour(agent, k) { return data.modeColours[modes[agent*nTimes + k]] ?? 
 // ---- over time
 
 let selected = [], charts = [];
+// distances of marks on an axis of whole numbers
+const whole = [0, 1, 2, 3, 4, 5, 6, 7, 8].flatMap(power => [1, 2, 5].map(step => step*10**power));
 const palette = data.palette;
 function select(agents) {
   selected = agents;
@@ -213,7 +216,7 @@ function select(agents) {
       width, height: Math.max(120, Math.min(220, 640/shown.length)), legend: { show: agents.length <= 8 && (c === shown.at(-1) || agents.length === 1), live: true },
       cursor: { sync: { key: "time" }, drag: { x: true, y: false } },
       scales: { x: { time: false }, y: { range: [low - pad, high + pad] } },
-      axes: [axis({ size: 34, values: (_, list) => list.map(number) }), axis({ label: data.columns[c].label, labelSize: 18, values: (_, list) => list.map(number) })],
+      axes: [axis({ size: 34, values: (_, list) => list.map(number) }), axis({ label: data.columns[c].label, labelSize: 18, values: (_, list) => list.map(number), ...data.columns[c].whole && { incrs: whole } })],
       series: [{ label: "s", value: (_, x) => x == null ? "" : number(x) }, ...series],
       hooks: { draw: [chart => { bands(chart, agents); timeLine(chart); }], ready: [chart => chart.over.addEventListener("click", () => {
         if (chart.cursor.left >= 0 && chart.select.width < 3) setTime(chart.posToVal(chart.cursor.left, "x"));
@@ -276,7 +279,8 @@ function list() {
     listed.push(e);
   });
   const of = data.nEvents > events.length ? `the first ${events.length} of ${data.nEvents}` : data.nEvents;
-  $("count").textContent = `(${listed.length === events.length ? of : listed.length + " of " + of})`;
+  // one event has a row for each mode that it changes
+  $("count").textContent = `(${listed.length === events.length ? of : listed.length + " of " + of} rows)`;
   show(0);
 }
 let first = 0, chosen = -1;
@@ -289,6 +293,7 @@ function show(from) {
     const cells = [t.toFixed(6), data.transitions[transition], data.agents[agent], other >= 0 ? data.agents[other] : "",
       before >= 0 ? data.modePaths[before] + " \u2192 " + data.modePaths[after] : ""];
     for (const cell of cells) row.insertCell().textContent = cell;
+    if (data.places[transition]) { row.cells[1].className = "place"; row.cells[1].title = "Show it in the model"; }
   }
   $("events").tBodies[0].replaceWith(body);
 }
@@ -318,6 +323,25 @@ function neighbour(step) {
   const at = events[chosen]?.[0] === now ? listed.indexOf(chosen) : -1;
   const e = at >= 0 ? listed[at + step] : step > 0 ? listed.find(e => events[e][0] > now) : listed.findLast(e => events[e][0] < now);
   if (e !== undefined) jump(e);
+}
+
+// ---- the text of the model
+
+function openText(file) {
+  document.querySelectorAll(".text").forEach((text, k) => { text.hidden = k !== file; });
+  document.querySelectorAll("#tabs button").forEach((tab, k) => tab.setAttribute("aria-selected", k === file));
+}
+// Shows where a transition stands.
+function showPlace([file, from, to]) {
+  openText(file);
+  const text = $("text" + file), pre = text.querySelector("pre");
+  const height = parseFloat(getComputedStyle(pre).lineHeight);
+  document.querySelector(".text .lines")?.remove();
+  const lines = document.createElement("div");
+  lines.className = "lines"; lines.dataset.lines = from + "-" + to;
+  lines.style.top = (from - 1)*height + "px"; lines.style.height = (to - from + 1)*height + "px";
+  text.append(lines);
+  lines.scrollIntoView({ block: "center" });
 }
 
 // ---- the page
@@ -361,7 +385,13 @@ toggle("names", () => names, on => { names = on; });
 $("agent").onchange = () => select($("agent").value === "few" ? few : [+$("agent").value]);
 $("transition").onchange = list; $("find").oninput = list;
 $("next").onclick = () => neighbour(1); $("previous").onclick = () => neighbour(-1);
-$("events").onclick = event => { const row = event.target.closest("tr[data-event]"); if (row) jump(+row.dataset.event); };
+$("events").onclick = event => {
+  const row = event.target.closest("tr[data-event]");
+  if (!row) return;
+  jump(+row.dataset.event);
+  if (event.target.matches(".place")) showPlace(data.places[events[+row.dataset.event][1]]);
+};
+document.querySelectorAll("#tabs button").forEach((tab, k) => { tab.onclick = () => openText(k); });
 $("help").onclick = () => $("keys").showModal();
 $("theme").onclick = () => {
   const dark = getComputedStyle(document.documentElement).colorScheme === "dark";
