@@ -1,6 +1,7 @@
 //! Section 8 of the paper, figures 10 and 11: the cost of the algorithms on the bumper arena.
 
 use std::fmt::Write as _;
+use std::sync::atomic::AtomicBool;
 
 use hyc::cli::compare::measure::{self, Measured};
 use hyc::cli::compare::table::geometric_mean;
@@ -59,7 +60,7 @@ impl Trio {
 
 /// A program under an algorithm; one that stops in error ends the process.
 pub fn run(program: &mut Program, algorithm: Algorithm, tolerance: f64, audit: bool) -> Measured {
-    measure::measure(program, algorithm, tolerance, &Limits::default(), audit)
+    measure::measure(program, algorithm, tolerance, &Limits::default(), &AtomicBool::new(false), audit)
         .unwrap_or_else(|diagnostic| panic!("{diagnostic:#?}"))
 }
 

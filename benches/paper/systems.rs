@@ -1,6 +1,7 @@
 //! The systems that the paper stands on, in numbers: what their ideas come to on the models that show them.
 
 use std::fmt::Write as _;
+use std::sync::atomic::AtomicBool;
 
 use hyc::cli::compare::measure::{Measured, measure};
 use hyc::codegen::program::Program;
@@ -21,7 +22,7 @@ pub fn tables(report: &mut Report) {
 
 fn run(program: &mut Program, algorithm: Algorithm) -> Measured {
     let tolerance = program.run.tolerance;
-    measure(program, algorithm, tolerance, &Limits::default(), true)
+    measure(program, algorithm, tolerance, &Limits::default(), &AtomicBool::new(false), true)
         .unwrap_or_else(|diagnostic| panic!("{diagnostic:#?}"))
 }
 

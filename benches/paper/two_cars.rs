@@ -4,6 +4,7 @@ use hyc::cli::compare::measure::{Measured, measure};
 use hyc::runtime::limits::Limits;
 use hyc::runtime::paper::{Algorithm, Form, Paper};
 use plotters::prelude::SeriesLabelPosition;
+use std::sync::atomic::AtomicBool;
 
 use crate::cars::two_cars;
 use crate::figure::{Panel, Style, figure, log_panel, panel, series};
@@ -49,10 +50,24 @@ pub fn figures(report: &mut Report) {
     ];
     for (first, second, text, until) in examples {
         let mut program = two_cars(text, until);
-        let run = measure(&mut program, Algorithm::Masim2004(paper), 1e-5, &Limits::default(), true)
-            .expect("the cars can be simulated");
-        let masim = measure(&mut program, Algorithm::Masim(Form::Plain), 1e-5, &Limits::default(), false)
-            .expect("the cars can be simulated");
+        let run = measure(
+            &mut program,
+            Algorithm::Masim2004(paper),
+            1e-5,
+            &Limits::default(),
+            &AtomicBool::new(false),
+            true,
+        )
+        .expect("the cars can be simulated");
+        let masim = measure(
+            &mut program,
+            Algorithm::Masim(Form::Plain),
+            1e-5,
+            &Limits::default(),
+            &AtomicBool::new(false),
+            false,
+        )
+        .expect("the cars can be simulated");
         let event = run.events.first().map(|event| event.time);
         let until = event.unwrap_or(until);
         let steps = steps(&run, until);

@@ -157,3 +157,46 @@ fn guards_whose_members_change_with_states_are_not_for_the_published_algorithms(
     fs::write(model, text).unwrap();
     assert_eq!(hyc(&["compare", model, "--algorithms", "masim,masim-2004,sasim-2004"]).0, 0);
 }
+
+/// Rows are on disk as runs end, and what is complete at an interruption is told.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_comparison_keeps_what_is_done() {
+    use std::process::Stdio;
+    use std::time::{Duration, Instant};
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("runs.csv");
+    let child = Command::new(env!("CARGO_BIN_EXE_hyc"))
+        .args([
+            "compare",
+            "models/bumper_random.hy",
+            "-p",
+            "N=4",
+            "--seeds",
+            "100000",
+            "--until",
+            "10",
+            "--csv",
+        ])
+        .arg(&file)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let rows = || fs::read_to_string(&file).map_or(0, |text| text.lines().count());
+    let begun = Instant::now();
+    while rows() < 8 && begun.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let output = child.wait_with_output().unwrap();
+    let (table, said) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(130), "{said}");
+    assert!(said.contains("of 100000 settings are complete"), "{said}");
+    assert_eq!(table.lines().count(), 1 + 3, "{table}");
+    let text = fs::read_to_string(&file).unwrap();
+    let n = text.lines().next().unwrap().split(',').count();
+    assert!(text.ends_with('\n') && text.lines().count() > 7);
+    assert!(text.lines().all(|line| line.split(',').count() == n), "{text}");
+}

@@ -39,7 +39,7 @@ pub struct Recorded {
 /// What a run came to.
 #[derive(Clone, Debug, Default)]
 pub struct Measured {
-    /// In order of time.
+    /// Firings of transitions, in order of time.
     pub events: Vec<Logged>,
     /// The rows that the program's records ask for.
     pub rows: Vec<Recorded>,
@@ -56,12 +56,13 @@ const REPEATS: usize = 3;
 /// Runs a program under an algorithm: once with its misses counted, if `audit` says so, then to be timed. The published
 /// algorithms integrate by Adams' method, `masim` by that of the program.
 ///
-/// Fails with what ended the run, if that is an error.
+/// Fails with what ended the run, if that is an error; one that is interrupted is measured up to there.
 pub fn measure(
     program: &mut Program,
     algorithm: Algorithm,
     tolerance: f64,
     limits: &Limits,
+    interrupt: &AtomicBool,
     audit: bool,
 ) -> Result<Measured, Box<Diagnostic>> {
     let own = (program.run.tolerance, program.run.integrator);
@@ -69,7 +70,7 @@ pub fn measure(
     if !matches!(algorithm, Algorithm::Masim(_)) {
         program.run.integrator = Integrator::Adams;
     }
-    let measured = run_and_time(program, with_audit(algorithm, audit), limits);
+    let measured = run_and_time(program, with_audit(algorithm, audit), limits, interrupt);
     (program.run.tolerance, program.run.integrator) = own;
     measured
 }
@@ -78,10 +79,11 @@ fn run_and_time(
     program: &Program,
     algorithm: Algorithm,
     limits: &Limits,
+    interrupt: &AtomicBool,
 ) -> Result<Measured, Box<Diagnostic>> {
     let mut measured = Measured::default();
     let begun = processor_seconds();
-    measured.stats = run(program, algorithm, limits, &mut measured)?.stats;
+    measured.stats = run(program, algorithm, limits, interrupt, &mut measured)?.stats;
     let taken = processor_seconds() - begun;
     // The audit's own work is not the algorithm's.
     let (mut least, mut total) =
@@ -91,7 +93,7 @@ fn run_and_time(
             break;
         }
         let begun = processor_seconds();
-        run(program, with_audit(algorithm, false), limits, &mut Nobody)?;
+        run(program, with_audit(algorithm, false), limits, interrupt, &mut Nobody)?;
         let taken = processor_seconds() - begun;
         (least, total) = (least.min(taken), total + taken);
     }
@@ -111,9 +113,10 @@ fn run(
     program: &Program,
     algorithm: Algorithm,
     limits: &Limits,
+    interrupt: &AtomicBool,
     observer: &mut dyn Observer,
 ) -> Result<Outcome, Box<Diagnostic>> {
-    let outcome = simulate_by(algorithm, program, limits, &AtomicBool::new(false), observer);
+    let outcome = simulate_by(algorithm, program, limits, interrupt, observer);
     match outcome.end {
         End::Error(diagnostic) => Err(diagnostic),
         End::Until | End::Stop { .. } | End::Interrupted | End::Output(_) => Ok(outcome),
@@ -134,7 +137,9 @@ pub fn agreement(events: &[Logged], reference: &[Logged], within: f64) -> usize 
 impl Observer for Measured {
     fn event(&mut self, event: &Event<'_>) -> io::Result<()> {
         let Event { time, agent, other, .. } = *event;
-        self.events.push(Logged { time, transition: event.transition.into(), agent, other });
+        if event.row == 0 {
+            self.events.push(Logged { time, transition: event.transition.into(), agent, other });
+        }
         Ok(())
     }
     fn sample(&mut self, _record: usize, row: &Row<'_>) -> io::Result<()> {

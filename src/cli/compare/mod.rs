@@ -5,17 +5,20 @@ pub mod measure;
 mod sweep;
 pub mod table;
 
-use std::path::Path;
+use std::fs::File;
+use std::io::Write;
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::algorithm::{algorithm, limits_of};
 use super::arguments::CompareArguments;
-use super::input::{Loaded, load};
+use super::input::{Loaded, load, reason};
 use super::refusal::{refuse_aggregates, refuse_endless};
-use super::run::compile;
-use super::terminal::{say, tell};
+use super::run::{INTERRUPTED, compile, listen};
+use super::terminal::{say, say_aside, tell};
 use super::{Exit, Refused};
 use crate::codegen::program::Program;
 use crate::model::Settings;
@@ -31,28 +34,60 @@ pub const TIGHT: f64 = 1e-12;
 /// Times of events that differ by no more are those of one event, s.
 pub const WITHIN: f64 = 1e-3;
 
-/// Runs, compares, prints.
+/// Runs, compares, prints: rows as they come, and a table of all settings that were completed.
 pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit, Refused> {
     let parameters: Vec<_> =
         arguments.params.iter().map(|(name, value)| swept(name, value)).collect::<Result<_, _>>()?;
     let cells = cells(&parameters, arguments.seeds);
     let n_runs = cells.len() * (1 + arguments.tolerance.len().max(1) * arguments.algorithms.len());
     let bar = progress_bar(n_runs as u64);
+    let names: Vec<&str> = arguments.algorithms.iter().map(|algorithm| algorithm.name()).collect();
+    let mut rows = Rows { path: arguments.csv.clone(), file: None };
     let mut entries = Vec::new();
-    for cell in &cells {
+    let mut exit = Exit::Fine;
+    listen()?;
+    for (number, cell) in cells.iter().enumerate() {
         bar.set_message(message(cell));
-        let exit = run_cell(arguments, cell, &bar, &mut entries)?;
+        let n_before = entries.len();
+        let mut keep = |entry: Entry| {
+            rows.write(&entry, &names)?;
+            entries.push(entry);
+            Ok(())
+        };
+        exit = run_cell(arguments, cell, &bar, &mut keep)?;
         if exit != Exit::Fine {
-            return Ok(exit);
+            entries.truncate(n_before);
+            let done = format!("{number} of {} settings are complete\n", cells.len());
+            bar.suspend(|| say_aside(&done));
+            break;
         }
     }
     bar.finish_and_clear();
-    let names: Vec<&str> = arguments.algorithms.iter().map(|algorithm| algorithm.name()).collect();
-    if let Some(path) = &arguments.csv {
-        write(path, &table::csv(&entries, &names))?;
+    if !entries.is_empty() {
+        say(&table::table(&entries, &names))?;
     }
-    say(&table::table(&entries, &names))?;
-    Ok(Exit::Fine)
+    Ok(exit)
+}
+
+/// The file with a row for each run; made when the first one comes.
+struct Rows {
+    path: Option<PathBuf>,
+    file: Option<File>,
+}
+
+impl Rows {
+    fn write(&mut self, entry: &Entry, algorithms: &[&str]) -> Result<(), Refused> {
+        let Some(path) = &self.path else { return Ok(()) };
+        let mut text = table::row(entry, algorithms);
+        let mut append = || {
+            if self.file.is_none() {
+                self.file = Some(File::create(path)?);
+                text.insert_str(0, table::COLUMNS);
+            }
+            self.file.as_mut().map_or(Ok(()), |file| file.write_all(text.as_bytes()))
+        };
+        append().map_err(|error| format!("cannot write `{}`: {}", path.display(), reason(&error)))
+    }
 }
 
 /// All runs of one setting; anything but `Fine` ends the comparison.
@@ -60,7 +95,7 @@ fn run_cell(
     arguments: &CompareArguments,
     cell: &Cell,
     bar: &ProgressBar,
-    entries: &mut Vec<Entry>,
+    keep: &mut dyn FnMut(Entry) -> Result<(), Refused>,
 ) -> Result<Exit, Refused> {
     let settings = Settings {
         params: cell.params.clone(),
@@ -103,17 +138,25 @@ fn run_cell(
     };
     let seed = program.run.seed;
     let runs = |program: &mut Program, algorithm: Algorithm, tolerance: f64| {
-        let measured = measure(program, algorithm, tolerance, &limits, true);
+        let measured = measure(program, algorithm, tolerance, &limits, &INTERRUPTED, true);
         bar.inc(1);
         measured.map_err(|diagnostic| tell(&sources, std::slice::from_ref(&diagnostic)))
     };
     let Ok(tight) = runs(&mut program, Algorithm::Masim(Form::Plain), TIGHT) else {
         return Ok(Exit::RunError);
     };
+    let is_interrupted = || INTERRUPTED.load(Ordering::SeqCst);
     for &tolerance in &tolerances {
         for (number, &algorithm) in algorithms.iter().enumerate() {
+            // What is interrupted is no measurement.
+            if is_interrupted() {
+                return Ok(Exit::Interrupted);
+            }
             let Ok(measured) = runs(&mut program, algorithm, tolerance) else { return Ok(Exit::RunError) };
-            entries.push(Entry {
+            if is_interrupted() {
+                return Ok(Exit::Interrupted);
+            }
+            keep(Entry {
                 label: cell.label.clone(),
                 seed,
                 tolerance,
@@ -121,7 +164,7 @@ fn run_cell(
                 agreed: agreement(&measured.events, &tight.events, WITHIN),
                 expected: tight.events.len(),
                 measured,
-            });
+            })?;
         }
     }
     Ok(Exit::Fine)
@@ -142,8 +185,4 @@ fn message(cell: &Cell) -> String {
         Some(seed) => format!("{} seed={seed}", cell.label),
         None => cell.label.clone(),
     }
-}
-
-fn write(path: &Path, text: &str) -> Result<(), Refused> {
-    std::fs::write(path, text).map_err(|error| format!("cannot write `{}`: {error}", path.display()))
 }

@@ -133,36 +133,32 @@ fn aligned(rows: &[Vec<String>]) -> String {
     text
 }
 
-/// One row for each run.
-pub(super) fn csv(entries: &[Entry], algorithms: &[&str]) -> String {
-    let mut text = String::from(
-        "setting,seed,tolerance,algorithm,events,agreed,expected,missed,late,latest,steps,rejected,rhs_evaluations,\
-         guard_evaluations,guard_ranges,guard_polynomials,operations,cpu_seconds\n",
-    );
-    for entry in entries {
-        let stats = &entry.measured.stats;
-        let misses = stats.misses.map_or(",,".to_string(), |misses| {
-            format!("{},{},{:?}", misses.missed, misses.late, misses.latest)
-        });
-        let _ = writeln!(
-            text,
-            "{},{},{:?},{},{},{},{},{misses},{},{},{},{},{},{},{},{:?}",
-            entry.label,
-            entry.seed,
-            entry.tolerance,
-            algorithms[entry.algorithm],
-            entry.measured.events.len(),
-            entry.agreed,
-            entry.expected,
-            stats.steps,
-            stats.rejected,
-            stats.rhs_evaluations,
-            stats.guard_evaluations,
-            stats.guard_ranges,
-            stats.guard_polynomials,
-            stats.operations,
-            entry.measured.seconds,
-        );
-    }
-    text
+/// The names of the columns of rows.
+pub(super) const COLUMNS: &str = "setting,seed,tolerance,algorithm,events,agreed,expected,missed,late,latest,steps,rejected,\
+    rhs_evaluations,guard_evaluations,guard_ranges,guard_polynomials,operations,cpu_seconds\n";
+
+/// The row of a run.
+pub(super) fn row(entry: &Entry, algorithms: &[&str]) -> String {
+    let stats = &entry.measured.stats;
+    let misses = stats
+        .misses
+        .map_or(",,".to_string(), |misses| format!("{},{},{:?}", misses.missed, misses.late, misses.latest));
+    format!(
+        "{},{},{:?},{},{},{},{},{misses},{},{},{},{},{},{},{},{:?}\n",
+        entry.label,
+        entry.seed,
+        entry.tolerance,
+        algorithms[entry.algorithm],
+        entry.measured.events.len(),
+        entry.agreed,
+        entry.expected,
+        stats.steps,
+        stats.rejected,
+        stats.rhs_evaluations,
+        stats.guard_evaluations,
+        stats.guard_ranges,
+        stats.guard_polynomials,
+        stats.operations,
+        entry.measured.seconds,
+    )
 }
