@@ -181,7 +181,11 @@ impl<'p> Engine<'p, '_> {
                 Rule::Fresh | Rule::Woken => closed(atom.relation, false),
             }
         };
-        if atom.relation == Relation::Crossing && rule == Rule::Woken && truth != before.truth {
+        // A sign that has changed in this instant has done so, whatever is written afterwards.
+        if atom.relation == Relation::Crossing
+            && rule == Rule::Woken
+            && (before.touched || truth != before.truth)
+        {
             touched = true;
         }
         let state = &mut self.guards.atoms[index];
@@ -363,24 +367,32 @@ impl<'p> Engine<'p, '_> {
         Some(out[0])
     }
 
-    /// Follows up what a micro-step wrote: arms and disarms, settles what reads a written agent, has recertified what
-    /// reads a restarted one. Returns the instances that may now fire, rising.
-    pub fn wake(&mut self, written: &Written) -> Result<Vec<u32>, Failure> {
-        let mut armed: FxHashSet<u32> = FxHashSet::default();
+    /// Disarms what belongs to modes that a micro-step left or entered; returns the instances of those entered, which are to be
+    /// armed when links lead where they should (rule 4).
+    pub fn change_modes(&mut self, written: &Written) -> Vec<u32> {
+        let mut entered = Vec::new();
         for change in &written.moves {
             for instance in self.guards.of_agent[change.agent].clone() {
                 let definition = self.guards.definition(instance);
                 if definition.mode == 0 || matches!(definition.origin, Origin::Pair(_)) {
                     continue;
                 }
-                if change.entered.contains(&definition.mode) {
-                    self.arm(instance, Rule::Rates)?;
-                    armed.insert(instance);
-                } else if change.left.contains(&definition.mode) {
+                let enters = change.entered.contains(&definition.mode);
+                if enters || change.left.contains(&definition.mode) {
                     self.disarm(instance);
+                }
+                if enters {
+                    entered.push(instance);
                 }
             }
         }
+        entered
+    }
+
+    /// Follows up what a micro-step wrote: arms what is new, settles what reads a written agent, has recertified what
+    /// reads a restarted one. Returns the instances that may now fire, rising.
+    pub fn wake(&mut self, written: &Written) -> Result<Vec<u32>, Failure> {
+        let mut armed: FxHashSet<u32> = FxHashSet::default();
         let noticed = written.before.keys().filter(|&&agent| self.is_noticed(agent, written));
         let mut concerned: Vec<usize> = noticed.chain(&written.restarted).copied().collect();
         concerned.sort_unstable();

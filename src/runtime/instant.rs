@@ -84,11 +84,16 @@ impl Engine<'_, '_> {
             if self.notes.is_some() {
                 self.explain_writes(&written, &fired);
             }
+            let entered = self.change_modes(&written);
             let mut woken = self.wake(&written)?;
             for &instance in &fired {
                 self.settle_fired(instance, &written);
             }
             woken.extend(self.refresh_links(&woken)?);
+            for &instance in &entered {
+                self.arm(instance, Rule::Rates)?;
+            }
+            woken.extend(entered);
             woken.sort_unstable();
             woken.dedup();
             for &instance in fired.iter().chain(&woken) {
@@ -183,7 +188,8 @@ impl Engine<'_, '_> {
         if let Some(function) = transition.priority {
             let own = self.guards.roots(candidate.instance);
             let frame = &transition.frame;
-            priority = truth::value(&self.agents, &mut self.present, function, frame, &slots, &own);
+            // Minus zero is zero.
+            priority = 0.0 + truth::value(&self.agents, &mut self.present, function, frame, &slots, &own);
             if priority.is_nan() {
                 let blame = self.blame(function, frame, &slots, &own);
                 let place = self.place(slots[0]);

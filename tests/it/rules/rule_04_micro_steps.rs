@@ -383,3 +383,70 @@ fn rule_04_destroying_whom_two_links_lead_to_is_a_write_of_both() {
     );
     assert_eq!(run.log(), ["0 A.t a[0]", "1 A.t a[1]"]);
 }
+
+#[test]
+fn rule_04_a_priority_of_minus_zero_is_none() {
+    let run = simulate(
+        "agent A { discrete m: int = 0, who: int = 0
+           first: after 1 priority -m { who := 10*who + 1 }
+           second: after 1 { who := 10*who + 2 } }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(run.value("a.who"), 12.0);
+}
+
+#[test]
+fn rule_04_links_lead_where_they_should_before_modes_are_armed() {
+    // both leave their modes at 1 s: when r is armed there is nobody on any more, so nothing rises after that
+    for guard in
+        ["rising(not l)", "crossing(if l then 1 else -1)", "rising((count o in O where o is On) < 1)"]
+    {
+        let run = simulate(&format!(
+            "agent O {{ initial mode On {{ off: after 1 -> Off }}  mode Off {{ }} }}
+             agent W {{ link l = nearest o in O where o is On by 1
+               initial mode Start {{ go: after 1 -> Wait }}
+               mode Wait {{ r: when {guard} {{ }} }} }}
+             system {{ o = O()  w = W() }}  run {{ until 2 }}"
+        ));
+        assert_eq!(run.log(), ["0 O.off o On->Off", "0 W.go w Start->Wait"], "{guard}");
+    }
+    // a delay is read where the link leads then
+    let run = simulate(
+        "agent O(d: real) { discrete lit = 1  off: after 1 { lit := 0 } }
+         agent W { link l = nearest o in O where o.lit > 0 or o.d > 5 by o.d
+           initial mode Start { go: after 1 -> Wait }
+           mode Wait { r: after (if l then l.d else 0) { } } }
+         system { a = O(d = 1)  b = O(d = 7)  w = W() }  run { until 20 }",
+    );
+    near(run.times("W.r")[0], 8.0, 1e-12);
+}
+
+#[test]
+fn rule_04_a_crossing_that_was_passed_over_is_tested_again() {
+    // by a reset, whatever the one that went first writes, and whoever reads that
+    for (write, watcher) in [
+        ("s := s + 1", ""),
+        ("s := s + 1", "assert s <= 1000"),
+        ("n := 6  s := s + 1", ""),
+        ("n := 6  s := s + 1", "assert s <= 1000"),
+    ] {
+        let run = simulate(&format!(
+            "agent A {{ discrete n: int = 0, s: int = 0
+               go: after 1 {{ n := 5 }}
+               a: when n >= 2 {{ {write} }}
+               b: when crossing(n - 1.5) {{ s := s + 10 }}
+               {watcher} }}
+             system {{ a = A() }}  run {{ until 3 }}"
+        ));
+        assert_eq!(run.log(), ["0 A.go a", "1 A.a a", "2 A.b a"], "{write} {watcher}");
+    }
+    // by the flow
+    let run = simulate(
+        "agent A { state x = 0, y = 0  discrete k: int = 0
+           flow { x' = 1  y' = 1 }
+           a: when crossing(x - 1) { x := 2 }
+           b: when crossing(x + y - 2) { k := 1 } }
+         system { a = A() }  run { until 3 }",
+    );
+    assert_eq!(run.log(), ["0 A.a a", "1 A.b a"]);
+}
