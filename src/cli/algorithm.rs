@@ -1,5 +1,8 @@
 //! How a run is computed: the command line's options over the settings of `run { }`, as the runtime takes them.
 
+use std::num::NonZero;
+use std::thread;
+
 use super::Refused;
 use super::arguments::{EngineArguments, PaperArguments};
 use super::limits::Limits;
@@ -62,14 +65,23 @@ pub(super) fn single(
     Ok(Computed { algorithm, backend })
 }
 
-/// Lays the limits that a model sets under those of the command line.
-pub(super) fn limits_of(model: &Model, given: &[(String, u64)]) -> Result<Limits, Refused> {
+/// Lays the limits that a model sets under those of the command line. As many threads as the machine has may work, unless
+/// somebody says how many.
+pub(super) fn limits_of(
+    model: &Model,
+    given: &[(String, u64)],
+    threads: Option<u32>,
+) -> Result<Limits, Refused> {
     let mut all = Vec::new();
     let machinery = &model.run.machinery;
     let own = [("max_microsteps", machinery.microsteps_max), ("zeno_events", machinery.zeno_events)];
     all.extend(own.into_iter().filter_map(|(name, value)| Some((name.to_string(), u64::from(value?)))));
     all.extend_from_slice(given);
-    Limits::new(&all)
+    let mut limits = Limits::new(&all)?;
+    let threads = threads.or(machinery.threads).map(|threads| threads as usize);
+    limits.run.threads_max =
+        threads.unwrap_or_else(|| thread::available_parallelism().map_or(1, NonZero::get));
+    Ok(limits)
 }
 
 fn form(name: EngineName) -> Form {

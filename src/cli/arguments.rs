@@ -107,7 +107,7 @@ pub(super) struct EngineArguments {
     /// [default: auto]
     #[arg(long, value_enum, value_name = "NAME")]
     pub(super) backend: Option<BackendName>,
-    /// How many threads may work; never changes a result (the plain engine uses one)
+    /// How many threads may work; changes no result (the plain engine uses one) [default: as many as the machine has]
     #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) threads: Option<u32>,
     /// Raise or lower a limit, such as max_steps=1e6; a wrong name lists all (repeatable)

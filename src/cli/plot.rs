@@ -101,7 +101,7 @@ fn traces_of_model(arguments: &PlotArguments) -> Result<(Option<Traces>, Exit), 
     tell(&loaded.sources, &loaded.diagnostics);
     let (exit, sources) = (loaded.exit(), loaded.sources);
     let Some(mut model) = loaded.model else { return Ok((None, exit)) };
-    let limits = limits_of(&model, &[])?;
+    let limits = limits_of(&model, &[], None)?;
     let Computed { algorithm, backend } = single(&EngineArguments::default(), &mut model, false)?;
     let mut warnings: Vec<Diagnostic> = Vec::new();
     let mut program = match compile(&model, backend, &mut warnings) {

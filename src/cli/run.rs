@@ -49,7 +49,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     let Loaded { sources, mut warnings, model: Some(mut model), inputs, .. } = loaded else {
         return Ok(exit);
     };
-    let limits = limits_of(&model, &arguments.engine.limits)?;
+    let limits = limits_of(&model, &arguments.engine.limits, arguments.engine.threads)?;
     let Computed { algorithm, backend } =
         single(&arguments.engine, &mut model, arguments.outputs.stats.is_some())?;
     refuse_endless(&model)?;
@@ -103,7 +103,6 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
         engine: algorithm.form().name(),
         integrator: program.run.integrator.name(),
         backend: backend.name(),
-        threads: 1,
         tolerance: program.run.tolerance,
         absolute: program.run.absolute.unwrap_or(program.run.tolerance),
         seed: program.run.seed,

@@ -16,8 +16,6 @@ pub struct Report<'a> {
     pub integrator: &'a str,
     /// `jit`, `interp`.
     pub backend: &'a str,
-    /// How many threads ran.
-    pub threads: usize,
     /// Relative tolerance.
     pub tolerance: f64,
     /// Absolute tolerance.

@@ -17,7 +17,7 @@ pub fn statistics(report: &Report<'_>) -> String {
         "engine": report.engine,
         "integrator": report.integrator,
         "backend": report.backend,
-        "threads": report.threads,
+        "threads": stats.threads,
         "tolerance": report.tolerance,
         "absolute": report.absolute,
         "seed": report.seed,

@@ -226,7 +226,6 @@ fn report<'a>(cast: &'a Cast, outcome: &'a Outcome, files: &'a [String]) -> Repo
         engine: "plain",
         integrator: "tsit5",
         backend: "jit",
-        threads: 1,
         tolerance: 1e-6,
         absolute: 1e-6,
         seed: 0,

@@ -1,14 +1,18 @@
 //! Who is cold: which agents run ahead in herds, and where they were at a time.
 
+use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use crate::codegen::program::{Flow, Program, Slot};
 use crate::math::Interval;
-use crate::runtime::herd::{Advanced, Herd};
+use crate::runtime::crew::Crew;
+use crate::runtime::herd::Herd;
 use crate::runtime::leap::{Covering, Leaps, STATES_MAX};
+use crate::runtime::route::first;
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::segment::{N_MAX, Segment};
 use crate::runtime::solve::series_step;
+use crate::runtime::stretch::Advanced;
 use crate::runtime::tracks::TrackStep;
 
 /// A place in a herd.
@@ -44,6 +48,11 @@ impl<'p> Cold<'p> {
     /// Herds for `n_agents`, all of which are not cold.
     pub fn new(program: &'p Program, n_agents: usize, accuracy: Accuracy, stop: f64) -> Self {
         let mut herds = Vec::new();
+        let mut begin_there: FxHashMap<(usize, usize), usize> = FxHashMap::default();
+        for agent in &program.population.agents {
+            let (ty, mode) = (agent.ty.index(), agent.mode.index());
+            *begin_there.entry((ty, first(&program.types[ty], mode))).or_default() += 1;
+        }
         let order = series_step::order(accuracy.tolerance, N_MAX - 1);
         let mut herd_of = |ty: usize, mode: usize| {
             let flow = program.types[ty].modes[mode].flow.as_ref()?;
@@ -52,7 +61,7 @@ impl<'p> Cold<'p> {
                 return None;
             }
             let leaps = Leaps { tape, order, accuracy, stop };
-            herds.push(Herd::new(leaps));
+            herds.push(Herd::new(leaps, begin_there.get(&(ty, mode)).copied().unwrap_or(0)));
             Some(herds.len() as u32 - 1)
         };
         let modes = |ty: usize| 0..program.types[ty].modes.len();
@@ -195,8 +204,8 @@ impl<'p> Cold<'p> {
     }
 
     /// Makes the tracks that are wanted, of ways that are followed from `from` on at least.
-    pub fn make_tracks(&mut self, from: f64) {
-        self.herds.iter_mut().for_each(|herd| herd.make_tracks(from));
+    pub fn make_tracks(&mut self, from: f64, crew: &Crew) {
+        self.herds.iter_mut().for_each(|herd| herd.make_tracks(from, crew));
     }
 
     /// The time from which the way of a cold agent is followed, s.
@@ -286,10 +295,15 @@ impl<'p> Cold<'p> {
 
     /// Advances all cold agents to `until` or beyond; those are told that could go no further, and those of whom it should be
     /// looked at whether their flow is stiff (true). Their ways stay known from `from` on.
-    pub fn advance(&mut self, from: f64, until: f64, tell: &mut dyn FnMut(usize, bool)) -> Vec<u64> {
+    pub fn advance(
+        &mut self,
+        (from, until): (f64, f64),
+        crew: &Crew,
+        tell: &mut dyn FnMut(usize, bool),
+    ) -> Vec<u64> {
         let mut steps = Vec::with_capacity(self.herds.len());
         for herd in &mut self.herds {
-            let Advanced { steps: taken, refused, unlooked } = herd.advance(from, until);
+            let Advanced { steps: taken, refused, unlooked } = herd.advance(from, until, crew);
             steps.push(taken);
             refused.into_iter().for_each(|place| tell(herd.agents[place] as usize, false));
             unlooked.into_iter().for_each(|place| tell(herd.agents[place] as usize, true));

@@ -368,15 +368,19 @@ impl Definition<'_> {
 
     /// How many entries its instances take: themselves and their comparisons.
     pub fn size(&self, agents: &Agents<'_>) -> u128 {
+        self.n_instances(agents) * (1 + self.n_atoms as u128)
+    }
+
+    /// How many instances there are if all pairs are listed.
+    pub fn n_instances(&self, agents: &Agents<'_>) -> u128 {
         let n = agents.of_type[self.ty].len() as u128;
-        let each = 1 + self.n_atoms as u128;
         match self.origin {
             Origin::Pair(pair) => {
                 let other = agents.of_type[self.frame.slots[1].ty()].len() as u128;
                 let pairs = n * other;
-                each * if pair.symmetric { pairs / 2 } else { pairs }
+                if pair.symmetric { pairs / 2 } else { pairs }
             }
-            Origin::Transition(_) | Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => each * n,
+            Origin::Transition(_) | Origin::Gate(_) | Origin::Claim(_) | Origin::Link(_) => n,
         }
     }
 

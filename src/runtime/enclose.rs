@@ -53,7 +53,9 @@ const KEPT_MAX: usize = 6;
 /// Into how many pieces a stretch is divided before it is given up.
 const PIECES_MAX: f64 = 64.0;
 /// How often a box is made larger before its horizon is given up.
-const TRIES: usize = 4;
+const TRIES: usize = 9;
+/// From then on it is made twice as much larger each time: beside a point of rest the first boxes say nothing of how far things get.
+const GENTLE: usize = 4;
 
 impl Enclosures {
     /// No boxes yet.
@@ -245,7 +247,8 @@ impl Enclosures {
         let time = Interval { lo: t, hi: t + horizon };
         let span = Interval { lo: 0.0, hi: horizon };
         let mut guess: Vec<Interval> = start.iter().map(|&bound| self.accuracy.padded(bound)).collect();
-        for _ in 0..TRIES {
+        for tries in 0..TRIES {
+            let share = 0.25 * f64::powi(2.0, tries.saturating_sub(GENTLE) as i32);
             let rates = self.rates(agents, group, &guess, time, leader);
             let image: Vec<Interval> =
                 start.iter().zip(&rates).map(|(start, &rate)| start.add(span.mul(rate))).collect();
@@ -259,7 +262,7 @@ impl Enclosures {
             guess = image
                 .iter()
                 .zip(&guess)
-                .map(|(&image, &guess)| self.accuracy.padded(grown(image.hull(guess))))
+                .map(|(&image, &guess)| self.accuracy.padded(grown(image.hull(guess), share)))
                 .collect();
         }
         None
@@ -318,8 +321,8 @@ fn start(agents: &Agents<'_>, group: &Group, t: f64) -> Vec<Interval> {
     start.into_iter().map(Interval::point).collect()
 }
 
-/// A quarter wider on either side.
-fn grown(bound: Interval) -> Interval {
-    let room = 0.25 * (bound.hi - bound.lo);
+/// Wider by this share on either side.
+fn grown(bound: Interval, share: f64) -> Interval {
+    let room = share * (bound.hi - bound.lo);
     Interval { lo: bound.lo - room, hi: bound.hi + room }
 }

@@ -10,6 +10,7 @@ use crate::codegen::trace::Compared;
 use crate::math::Interval;
 use crate::runtime::advance::Stepper;
 use crate::runtime::comparisons;
+use crate::runtime::crew::Crew;
 use crate::runtime::detect::CurveRows;
 use crate::runtime::enclose::Enclosures;
 use crate::runtime::failure::{Failure, Place, Reason};
@@ -122,6 +123,8 @@ pub struct Engine<'p, 'o> {
     pub present: Present,
     /// Takes steps.
     pub stepper: Stepper,
+    /// Who advances the cold agents.
+    pub crew: Crew,
     /// Scratch for root searches, with their counts.
     pub curves: CurveRows,
     /// Scratch: rows as intervals.
@@ -224,6 +227,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             program,
             present: Present::new(&agents),
             stepper: Stepper::new(&agents, methods, accuracy, time_end, limits),
+            crew: Crew::new(if form == Form::Fast { limits.threads_max } else { 1 }),
             curves: CurveRows::new(&agents),
             enclosures: Enclosures::new(&agents, accuracy),
             reaches: Reaches::new(&agents, accuracy, time_end),
@@ -332,6 +336,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             self.stepper.steps_of_methods().into_iter().map(|(name, n)| (name.name().to_string(), n));
         let stats = Stats {
             events: self.n_events,
+            threads: self.crew.n_threads() as u64,
             steps: counts.steps,
             rejected: counts.rejected,
             starts: counts.starts,

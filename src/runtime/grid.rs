@@ -84,48 +84,64 @@ impl Orders {
 impl Grid {
     /// A grid of these boxes, `n` intervals each.
     pub fn new(n: usize, boxes: Vec<Interval>) -> Self {
-        let mut grid = Self { n, boxes, ..Self::default() };
-        let n_boxes = grid.len();
-        for dimension in 0..n.min(DIMENSIONS) {
-            let widths = (0..n_boxes).map(|k| grid.boxes[k * n + dimension].width());
-            let (sum, count) = widths
-                .filter(|width| width.is_finite())
-                .fold((0.0, 0_usize), |(sum, count), width| (sum + width, count + 1));
-            grid.scale[dimension] = if sum > 0.0 { count as f64 / (2.0 * sum) } else { 1.0 };
-        }
-        let mut entries = Vec::with_capacity(2 * n_boxes);
-        for number in 0..n_boxes as u32 {
-            if !grid.for_each_cell(grid.get(number), &mut |cell| entries.push((cell, number))) {
-                grid.large.push(number);
-            }
-        }
-        grid.fill(&entries);
+        let mut grid = Self::default();
+        grid.renew(n, boxes);
         grid
     }
 
-    /// Sorts entries into buckets.
-    fn fill(&mut self, entries: &[(Cell, u32)]) {
-        self.starts = vec![0; entries.len().next_power_of_two() + 1];
-        for &(cell, _) in entries {
-            let bucket = self.bucket(cell);
-            self.starts[bucket + 1] += 1;
-        }
-        for bucket in 1..self.starts.len() {
-            self.starts[bucket] += self.starts[bucket - 1];
-        }
-        let mut next = self.starts.clone();
-        self.entries = vec![(0, 0); entries.len()];
-        for &entry in entries {
-            let place = &mut next[self.bucket(entry.0)];
-            self.entries[*place as usize] = entry;
-            *place += 1;
-        }
+    /// The boxes, emptied, to be filled again for [`Grid::renew`].
+    pub fn take_boxes(&mut self) -> Vec<Interval> {
+        let mut boxes = std::mem::take(&mut self.boxes);
+        boxes.clear();
+        boxes
     }
 
-    /// The bucket of a cell: those of neighbours are near.
-    fn bucket(&self, cell: Cell) -> usize {
-        let mixed = cell ^ (cell >> 21).wrapping_mul(0x9E37_79B9) ^ (cell >> 42).wrapping_mul(0x85EB_CA6B);
-        mixed as usize & (self.starts.len() - 2)
+    /// The same as a new grid of these boxes, in the memory of this one.
+    pub fn renew(&mut self, n: usize, boxes: Vec<Interval>) {
+        (self.n, self.boxes, self.orders) = (n, boxes, OnceCell::new());
+        self.large.clear();
+        self.moved.clear();
+        self.moved_large.clear();
+        let n_boxes = self.len();
+        for dimension in 0..n.min(DIMENSIONS) {
+            let widths = (0..n_boxes).map(|k| self.boxes[k * n + dimension].width());
+            let (sum, count) = widths
+                .filter(|width| width.is_finite())
+                .fold((0.0, 0_usize), |(sum, count), width| (sum + width, count + 1));
+            self.scale[dimension] = if sum > 0.0 { count as f64 / (2.0 * sum) } else { 1.0 };
+        }
+        self.fill();
+    }
+
+    /// Enters all boxes into the buckets of their cells, those that are too large into their list.
+    fn fill(&mut self) {
+        let (mut starts, mut entries) = (std::mem::take(&mut self.starts), std::mem::take(&mut self.entries));
+        let mut large = std::mem::take(&mut self.large);
+        starts.clear();
+        starts.resize((2 * self.len()).next_power_of_two() + 1, 0);
+        let n_buckets = starts.len() - 1;
+        for number in 0..self.len() as u32 {
+            let count = &mut |cell| starts[bucket(cell, n_buckets)] += 1;
+            if !self.for_each_cell(self.get(number), count) {
+                large.push(number);
+            }
+        }
+        // First where each bucket ends; where it begins, when it has been filled from its end on.
+        let mut end = 0;
+        for start in &mut starts {
+            end += *start;
+            *start = end;
+        }
+        entries.clear();
+        entries.resize(end as usize, (0, 0));
+        for number in (0..self.len() as u32).rev() {
+            self.for_each_cell(self.get(number), &mut |cell| {
+                let place = &mut starts[bucket(cell, n_buckets)];
+                *place -= 1;
+                entries[*place as usize] = (cell, number);
+            });
+        }
+        (self.starts, self.entries, self.large) = (starts, entries, large);
     }
 
     /// All boxes in the bucket of a cell.
@@ -133,7 +149,7 @@ impl Grid {
         match self.starts.len() {
             0 => &[],
             _ => {
-                let bucket = self.bucket(cell);
+                let bucket = bucket(cell, self.starts.len() - 1);
                 &self.entries[self.starts[bucket] as usize..self.starts[bucket + 1] as usize]
             }
         }
@@ -274,6 +290,12 @@ impl Grid {
             place[next + 1..dimensions].copy_from_slice(&first[next + 1..dimensions]);
         }
     }
+}
+
+/// The bucket of a cell, of a number that is a power of two: those of neighbours are near.
+fn bucket(cell: Cell, n_buckets: usize) -> usize {
+    let mixed = cell ^ (cell >> 21).wrapping_mul(0x9E37_79B9) ^ (cell >> 42).wrapping_mul(0x85EB_CA6B);
+    mixed as usize & (n_buckets - 1)
 }
 
 /// An empty box overlaps nothing, not even one without end.

@@ -202,6 +202,12 @@ impl<'p> Guards<'p> {
             retired: Vec::new(),
             thinned: Vec::new(),
         };
+        let (n_instances, n_atoms) = whole().fold((0, 0), |(instances, atoms), definition| {
+            let n = definition.n_instances(agents);
+            (instances + n as usize, atoms + n as usize * definition.n_atoms)
+        });
+        guards.instances.reserve_exact(n_instances);
+        guards.atoms.reserve_exact(n_atoms);
         for (number, definition) in definitions.iter().enumerate() {
             if definition.near.is_empty() {
                 for_each_binding(agents, definition, &mut |roots| {

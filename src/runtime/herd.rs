@@ -2,17 +2,17 @@
 //!
 //! Such an agent is *cold*: it runs ahead alone, and leaves no segments but where a track is wanted of it ([`Tracks`]). A row
 //! holds where it is, where its last step began, and where the steps began that lead over the present; from there its way
-//! can be followed again, to the bit, by whoever asks where it was ([`Leaps::follow`]). In lanes, an agent that has come far
-//! enough makes room for the next. Beside a row stand bounds of its states since the window began, by the dense output of its
+//! can be followed again, to the bit, by whoever asks where it was ([`Leaps::follow`]). Beside a row stand bounds of its states since the window began, by the dense output of its
 //! steps.
 
 use std::cell::RefCell;
 
-use crate::math::lanes::{Level, Work};
-use crate::math::{Interval, N_LANES, Numbers, Wide};
-use crate::runtime::leap::{Covering, LeapRows, Leaps, STATES_MAX};
+use crate::math::Interval;
+use crate::runtime::crew::Crew;
+use crate::runtime::leap::{Covering, LeapRows, Leaps};
 use crate::runtime::solve::segment::Segment;
-use crate::runtime::tracks::Tracks;
+use crate::runtime::stretch::{Advanced, Looks, NO_LOOKS, Stretch};
+use crate::runtime::tracks::{Kept, Tracks};
 
 /// Agents of one type and mode.
 #[derive(Clone, Debug)]
@@ -39,65 +39,22 @@ pub struct Herd<'p> {
     alone: RefCell<(LeapRows<f64>, Segment)>,
 }
 
-/// Steps taken, and those that were refused.
-#[derive(Clone, Debug, Default)]
-pub struct Advanced {
-    /// Steps.
-    pub steps: u64,
-    /// The places of those that could go no further by such steps, or only by very many.
-    pub refused: Vec<usize>,
-    /// The places of those that have taken many, so that somebody should look whether their flow is stiff.
-    pub unlooked: Vec<usize>,
-}
-
-/// How many steps an agent takes before somebody should look whether its flow is stiff.
-#[derive(Clone, Copy, Debug)]
-struct Looks {
-    /// So many more.
-    left: u32,
-    /// So many from one look to the next.
-    patience: u32,
-}
-
-/// No steps have been taken.
-const NO_LOOKS: Looks = Looks { left: 256, patience: 256 };
-/// The patience doubles from look to look up to this.
-const PATIENCE_MAX: u32 = 2048;
-
-impl Looks {
-    /// Counts steps; whether somebody should look.
-    fn count(&mut self, steps: u32) -> bool {
-        self.left = self.left.saturating_sub(steps);
-        if self.left > 0 {
-            return false;
-        }
-        self.patience = (2 * self.patience).min(PATIENCE_MAX);
-        self.left = self.patience;
-        true
-    }
-}
-
-/// An agent that takes so many steps in a window is left to who can choose another method.
-const STEPS_MAX: u32 = 200;
-/// Up to this many lanes are cheaper one by one.
-pub const FEW: usize = 3;
-
 impl<'p> Herd<'p> {
-    /// No agents yet.
-    pub fn new(leaps: Leaps<'p>) -> Self {
+    /// No agents yet, and memory for so many.
+    pub fn new(leaps: Leaps<'p>, n_agents: usize) -> Self {
         let n = leaps.tape.n_states;
         let alone = RefCell::new((LeapRows::new(&leaps), Segment::default()));
         let tracks = Tracks::new(n, leaps.order + 1);
-        let (agents, clocks, rows, bounds, looks) = Default::default();
+        let width = 3 * n + 2 + leaps.tape.fixed.len();
         Self {
             leaps,
             n,
-            width: 3 * n + 2 + leaps.tape.fixed.len(),
-            agents,
-            clocks,
-            rows,
-            bounds,
-            looks,
+            width,
+            agents: Vec::with_capacity(n_agents),
+            clocks: Vec::with_capacity(n_agents),
+            rows: Vec::with_capacity(n_agents * width),
+            bounds: Vec::with_capacity(n_agents * 2 * n),
+            looks: Vec::with_capacity(n_agents),
             tracks,
             alone,
         }
@@ -210,272 +167,62 @@ impl<'p> Herd<'p> {
 
     /// Advances all that have not come as far as `until` until they have; what is known of their ways begins at `from` or
     /// before it.
-    pub fn advance(&mut self, from: f64, until: f64) -> Advanced {
-        let waiting = (0..self.clocks.len()).filter(|&place| self.clocks[place] < until).collect();
-        self.advance_these(waiting, (from, until))
+    pub fn advance(&mut self, from: f64, until: f64, crew: &Crew) -> Advanced {
+        let is_waiting = |place: &usize| self.clocks[*place] < until;
+        let waiting: Vec<usize> = (0..self.clocks.len()).filter(is_waiting).collect();
+        self.advance_these(waiting, (from, until), crew)
     }
 
     /// Makes the tracks that are wanted: the steps are taken again from where the ways are known, which is `from` or before it.
-    pub fn make_tracks(&mut self, from: f64) {
+    pub fn make_tracks(&mut self, from: f64, crew: &Crew) {
         let tracked = self.tracks.wanted().iter().map(|&place| place as usize);
-        let waiting = tracked.filter(|&place| self.clocks[place] < f64::INFINITY).collect();
-        self.advance_these(waiting, (from, from));
+        let mut waiting: Vec<usize> = tracked.filter(|&place| self.clocks[place] < f64::INFINITY).collect();
+        waiting.sort_unstable();
+        self.advance_these(waiting, (from, from), crew);
     }
 
-    fn advance_these(&mut self, waiting: Vec<usize>, (from, until): (f64, f64)) -> Advanced {
+    /// Advances the agents in some places, rising, by stretches of places; how many stretches there are changes no bit.
+    fn advance_these(&mut self, waiting: Vec<usize>, span: (f64, f64), crew: &Crew) -> Advanced {
+        let stretches = self.stretches(&waiting, crew.shares(waiting.len()));
+        let done = crew.map(stretches, |stretch| stretch.advance(span));
         let mut advanced = Advanced::default();
-        let mut lanes = Lanes::new(&self.leaps);
-        let mut waiting = waiting.into_iter();
-        loop {
-            for lane in 0..N_LANES {
-                if lanes.place[lane] != NOBODY {
-                    continue;
-                }
-                let Some(place) = waiting.next() else { break };
-                self.board(place, lane, (from, until), &mut lanes);
-            }
-            if lanes.n_boarded <= FEW {
-                break;
-            }
-            Level::best().run(Step { leaps: &self.leaps, lanes: &mut lanes });
-            self.leave(&mut lanes, &mut advanced);
+        for (part, kept) in done {
+            advanced.steps += part.steps;
+            advanced.refused.extend(part.refused);
+            advanced.unlooked.extend(part.unlooked);
+            self.tracks.append(kept);
         }
-        // The last few: one by one, with the same bits.
-        let mut rows = LeapRows::new(&self.leaps);
-        for lane in 0..N_LANES {
-            if lanes.place[lane] != NOBODY {
-                self.alone(lane, &lanes, &mut rows, &mut advanced);
-            }
-        }
+        advanced.refused.sort_unstable();
+        advanced.unlooked.sort_unstable();
         advanced
     }
 
-    /// Puts an agent into a lane: where it is or, if a track is wanted of it, where its way is known from.
-    fn board(&mut self, place: usize, lane: usize, (from, until): (f64, f64), lanes: &mut Lanes) {
+    /// So many stretches, about as many agents waiting in each.
+    fn stretches<'h>(&'h mut self, waiting: &'h [usize], n_stretches: usize) -> Vec<Stretch<'h, 'p>> {
         let (n, width) = (self.n, self.width);
-        let row = &mut self.rows[place * width..][..width];
-        if row[n] <= from {
-            row.copy_within(n..2 * n + 1, 2 * n + 1);
-            self.bounds.copy_within(place * 2 * n + n..place * 2 * n + 2 * n, place * 2 * n);
+        let mut clocks = self.clocks.as_mut_slice();
+        let mut rows = self.rows.as_mut_slice();
+        let mut bounds = self.bounds.as_mut_slice();
+        let mut looks = self.looks.as_mut_slice();
+        let mut stretches = Vec::with_capacity(n_stretches);
+        let mut first = 0;
+        for waiting in waiting.chunks(waiting.len().div_ceil(n_stretches).max(1)) {
+            let n_places = waiting[waiting.len() - 1] + 1 - first;
+            stretches.push(Stretch {
+                leaps: &self.leaps,
+                first,
+                waiting,
+                n,
+                width,
+                clocks: clocks.split_off_mut(..n_places).unwrap_or_default(),
+                rows: rows.split_off_mut(..n_places * width).unwrap_or_default(),
+                bounds: bounds.split_off_mut(..n_places * 2 * n).unwrap_or_default(),
+                looks: looks.split_off_mut(..n_places).unwrap_or_default(),
+                tracks: &self.tracks,
+                kept: Kept::default(),
+            });
+            first += n_places;
         }
-        let is_tracked = self.tracks.wants(place);
-        let start = if is_tracked { row[2 * n + 1] } else { self.clocks[place] };
-        let first = if is_tracked { 2 * n + 2 } else { 0 };
-        lanes.place[lane] = place;
-        lanes.is_tracked[lane] = is_tracked;
-        lanes.taken[lane] = 0;
-        lanes.n_boarded += 1;
-        lanes.target[lane] = until.max(self.clocks[place]);
-        lanes.t.0[lane] = start;
-        lanes.last_t.0[lane] = row[n];
-        for i in 0..n {
-            lanes.x[i].0[lane] = row[first + i];
-            lanes.last_x[i].0[lane] = row[n + 1 + i];
-            let bound = self.bounds[place * 2 * n + i];
-            (lanes.lows[i].0[lane], lanes.highs[i].0[lane]) = (bound.lo, bound.hi);
-        }
-        for (wide, &value) in lanes.rows.fixed.iter_mut().zip(&row[3 * n + 2..]) {
-            wide.0[lane] = value;
-        }
-    }
-
-    /// Takes those out of their lanes that have come far enough, or cannot go on.
-    fn leave(&mut self, lanes: &mut Lanes, advanced: &mut Advanced) {
-        for lane in 0..N_LANES {
-            let place = lanes.place[lane];
-            if place == NOBODY {
-                continue;
-            }
-            let good = lanes.good.0[lane] != 0.0;
-            lanes.taken[lane] += 1;
-            if good {
-                // What a track takes again has been counted.
-                advanced.steps += u64::from(lanes.t.0[lane] > self.clocks[place]);
-                if lanes.is_tracked[lane] {
-                    self.track(lane, lanes);
-                }
-            }
-            let goes_on = good && lanes.t.0[lane] < lanes.target[lane];
-            if goes_on && (lanes.taken[lane] < STEPS_MAX || lanes.is_tracked[lane]) {
-                continue;
-            }
-            lanes.place[lane] = NOBODY;
-            lanes.n_boarded -= 1;
-            if lanes.is_tracked[lane] {
-                continue;
-            }
-            // After a refused step it is where that began, and has come there by none that is known.
-            let (t, x) = if good { (lanes.t, &lanes.x) } else { (lanes.last_t, &lanes.last_x) };
-            let (n, width) = (self.n, self.width);
-            let row = &mut self.rows[place * width..][..width];
-            self.clocks[place] = t.0[lane];
-            row[n] = lanes.last_t.0[lane];
-            for i in 0..n {
-                row[i] = x[i].0[lane];
-                row[n + 1 + i] = lanes.last_x[i].0[lane];
-                let [since, last] = [0, n].map(|first| place * 2 * n + first + i);
-                self.bounds[since] = Interval { lo: lanes.lows[i].0[lane], hi: lanes.highs[i].0[lane] };
-                let LeapRows { lows, highs, .. } = &lanes.rows;
-                self.bounds[last] = Interval { lo: lows[i].0[lane], hi: highs[i].0[lane] };
-            }
-            if self.looks[place].count(lanes.taken[lane]) {
-                advanced.unlooked.push(place);
-            }
-            if !good || goes_on {
-                advanced.refused.push(place);
-            }
-        }
-    }
-
-    /// Adds the last step of a lane to the track of its agent.
-    fn track(&mut self, lane: usize, lanes: &Lanes) {
-        let LeapRows { terms, errors, .. } = &lanes.rows;
-        let of_lane = |row: &[Wide], out: &mut [f64; STATES_MAX]| {
-            out.iter_mut().zip(row).for_each(|(out, wide)| *out = wide.0[lane]);
-        };
-        let [mut error, mut x, mut x_new] = [[0.0; STATES_MAX]; 3];
-        of_lane(errors, &mut error);
-        of_lane(&lanes.last_x, &mut x);
-        of_lane(&lanes.x, &mut x_new);
-        let n = self.n;
-        let ratio = self.leaps.accuracy.error_norm(&error[..n], &x[..n], &x_new[..n]);
-        let step = (lanes.last_t.0[lane], lanes.h.0[lane], lanes.t.0[lane]);
-        let terms = terms.iter().map(|wide| wide.0[lane]);
-        self.tracks.push(lanes.place[lane], step, ratio, x_new[..n].iter().copied(), terms);
-    }
-
-    /// Advances one agent from where its lane has brought it.
-    fn alone(&mut self, lane: usize, lanes: &Lanes, rows: &mut LeapRows<f64>, advanced: &mut Advanced) {
-        let (n, width, place) = (self.n, self.width, lanes.place[lane]);
-        rows.fixed.copy_from_slice(self.fixed(place));
-        let mut t = lanes.t.0[lane];
-        let mut last_t = lanes.last_t.0[lane];
-        let (mut x, mut last_x, mut x_new) = ([0.0; STATES_MAX], [0.0; STATES_MAX], [0.0; STATES_MAX]);
-        for i in 0..n {
-            (x[i], last_x[i]) = (lanes.x[i].0[lane], lanes.last_x[i].0[lane]);
-        }
-        let mut since: [Interval; STATES_MAX] = [Interval::WHOLE; STATES_MAX];
-        for (since, (low, high)) in since.iter_mut().zip(lanes.lows.iter().zip(&lanes.highs)) {
-            *since = Interval { lo: low.0[lane], hi: high.0[lane] };
-        }
-        let steps_max = if lanes.is_tracked[lane] { u32::MAX } else { STEPS_MAX };
-        let mut taken = lanes.taken[lane];
-        for _ in 0..steps_max {
-            if t >= lanes.target[lane] {
-                break;
-            }
-            taken += 1;
-            let leap = self.leaps.leap(t, &x[..n], rows, &mut x_new[..n]);
-            if leap.good == 0.0 {
-                advanced.refused.push(place);
-                break;
-            }
-            advanced.steps += u64::from(leap.end > self.clocks[place]);
-            if lanes.is_tracked[lane] {
-                let ratio = self.leaps.accuracy.error_norm(&rows.errors, &x[..n], &x_new[..n]);
-                let (x_end, terms) = (x_new[..n].iter().copied(), rows.terms.iter().copied());
-                self.tracks.push(place, (t, leap.h, leap.end), ratio, x_end, terms);
-            }
-            self.leaps.bound(&x[..n], &x_new[..n], rows);
-            for (since, (&lo, &hi)) in since.iter_mut().zip(rows.lows.iter().zip(&rows.highs)) {
-                *since = since.hull(Interval { lo, hi });
-            }
-            (last_t, last_x) = (t, x);
-            (t, x) = (leap.end, x_new);
-        }
-        if lanes.is_tracked[lane] {
-            return;
-        }
-        if self.looks[place].count(taken) {
-            advanced.unlooked.push(place);
-        }
-        if t < lanes.target[lane] && advanced.refused.last() != Some(&place) {
-            advanced.refused.push(place);
-        }
-        let row = &mut self.rows[place * width..][..width];
-        self.clocks[place] = t;
-        row[..n].copy_from_slice(&x[..n]);
-        row[n] = last_t;
-        row[n + 1..2 * n + 1].copy_from_slice(&last_x[..n]);
-        let (bounds, last) = self.bounds[place * 2 * n..][..2 * n].split_at_mut(n);
-        bounds.copy_from_slice(&since[..n]);
-        for (i, last) in last.iter_mut().enumerate() {
-            *last = Interval { lo: rows.lows[i], hi: rows.highs[i] };
-        }
-    }
-}
-
-/// No agent is in a lane.
-pub const NOBODY: usize = usize::MAX;
-
-/// The agents that are advanced at once.
-struct Lanes {
-    place: [usize; N_LANES],
-    is_tracked: [bool; N_LANES],
-    /// How far each is to come, s.
-    target: [f64; N_LANES],
-    /// Steps in this window.
-    taken: [u32; N_LANES],
-    n_boarded: usize,
-    t: Wide,
-    h: Wide,
-    x: Vec<Wide>,
-    last_t: Wide,
-    last_x: Vec<Wide>,
-    x_new: Vec<Wide>,
-    /// Bounds of the states since the window began.
-    lows: Vec<Wide>,
-    highs: Vec<Wide>,
-    good: Wide,
-    rows: LeapRows<Wide>,
-}
-
-impl Lanes {
-    fn new(leaps: &Leaps<'_>) -> Self {
-        let (zero, n) = (Wide::all(0.0), leaps.tape.n_states);
-        Self {
-            place: [NOBODY; N_LANES],
-            is_tracked: [false; N_LANES],
-            target: [0.0; N_LANES],
-            taken: [0; N_LANES],
-            n_boarded: 0,
-            t: zero,
-            h: zero,
-            x: vec![zero; n],
-            last_t: zero,
-            last_x: vec![zero; n],
-            x_new: vec![zero; n],
-            lows: vec![zero; n],
-            highs: vec![zero; n],
-            good: zero,
-            rows: LeapRows::new(leaps),
-        }
-    }
-}
-
-/// A step of all lanes.
-struct Step<'a, 'p> {
-    leaps: &'a Leaps<'p>,
-    lanes: &'a mut Lanes,
-}
-
-impl Work for Step<'_, '_> {
-    #[inline(always)]
-    fn work(self) {
-        let Lanes { t, h, x, last_t, last_x, x_new, lows, highs, good, rows, .. } = self.lanes;
-        let leap = self.leaps.leap(*t, x, rows, x_new);
-        self.leaps.bound(x, x_new, rows);
-        for (low, &new) in lows.iter_mut().zip(&rows.lows) {
-            *low = low.zip(new, |low, new| if new < low { new } else { low });
-        }
-        for (high, &new) in highs.iter_mut().zip(&rows.highs) {
-            *high = high.zip(new, |high, new| if new > high { new } else { high });
-        }
-        *last_t = *t;
-        *h = leap.h;
-        *t = leap.end;
-        *good = leap.good;
-        std::mem::swap(x, last_x);
-        std::mem::swap(x, x_new);
+        stretches
     }
 }

@@ -36,7 +36,7 @@ impl Engine<'_, '_> {
         let outlook = Outlook { n_hot, n_tracked: self.agents.cold.n_tracked() };
         let recorded = self.recorder.recorded_steps();
         recorded.iter().for_each(|&agent| self.agents.cold.want_track(agent));
-        self.agents.cold.make_tracks(self.present.time);
+        self.agents.cold.make_tracks(self.present.time, &self.crew);
         self.queue_steps(&recorded, until);
         self.follow_doubts(doubtful, until);
         self.has_thawed = false;
@@ -85,7 +85,9 @@ impl Engine<'_, '_> {
     fn advance_cold(&mut self, until: f64) {
         let mut back = Vec::new();
         let from = self.present.time;
-        let steps = self.agents.cold.advance(from, until, &mut |agent, look| back.push((agent, look)));
+        let steps = self.agents.cold.advance((from, until), &self.crew, &mut |agent, look| {
+            back.push((agent, look));
+        });
         self.count_cold(&steps);
         for (agent, look) in back {
             if look && !self.stepper.has_choice() {

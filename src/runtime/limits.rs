@@ -15,6 +15,8 @@ pub struct Limits {
     pub generations_max: u32,
     /// `max_guards`: guard instances over pairs (all pairs are listed).
     pub guards_max: usize,
+    /// `threads`, `-j`: how many threads may work. No result depends on it.
+    pub threads_max: usize,
     /// `max_pieces`: how many pieces of time one search for a root of one guard looks at. A step may take several searches.
     pub pieces_max: u32,
 }
@@ -28,6 +30,7 @@ impl Default for Limits {
             agents_max: 10_000_000,
             generations_max: 100_000,
             guards_max: 50_000_000,
+            threads_max: 1,
             pieces_max: 10_000,
         }
     }

@@ -42,6 +42,8 @@ pub mod paper;
 pub mod observe;
 mod leap;
 mod tracks;
+mod crew;
+mod stretch;
 mod herd;
 mod survey;
 mod cold;

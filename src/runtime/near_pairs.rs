@@ -113,7 +113,7 @@ impl<'p> Engine<'p, '_> {
 
     fn list_field(&mut self, field: &mut Field, far: Far, new: &mut Vec<New>) -> Result<(), Failure> {
         let near = self.ranges_of(field);
-        let mut boxes = Vec::new();
+        let mut boxes = field.grid.take_boxes();
         field.seats = field.seats_of(&self.agents);
         field.scopes.changed.clear();
         for side in field.sides() {
@@ -124,7 +124,7 @@ impl<'p> Engine<'p, '_> {
                 }
             }
         }
-        field.grid = Grid::new(near.len(), boxes);
+        field.grid.renew(near.len(), boxes);
         let mut wanted: Vec<[u32; 2]> = Vec::new();
         field.grid.for_each_pair(&mut |a, b| wanted.extend(field.pairs(&self.agents, a, b)));
         wanted.extend(field.selves(&self.agents).iter().map(|&agent| [agent as u32; 2]));

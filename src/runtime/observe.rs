@@ -322,6 +322,8 @@ pub struct FalseAssert {
 pub struct Stats {
     /// Events: how often transitions have fired, the sum of `transitions`. One may have several rows in the event log.
     pub events: u64,
+    /// How many threads have worked.
+    pub threads: u64,
     /// Accepted steps (a coupled group's step counts once for each member).
     pub steps: u64,
     /// Rejected steps.

@@ -122,13 +122,21 @@ impl Reaches {
             self.kept[agent].pure = false;
             out.resize(n, Interval::WHOLE);
         }
-        // Where it is later than it has come to is not known.
-        let from = from.min(anchor(agents, groups, agent).0);
-        enclosures.states(agents, groups, agent, (from, to), &mut |state, bound| {
+        // Where it is later than it has come to is not known; of one that runs ahead it is known where it was until then.
+        let clock = anchor(agents, groups, agent).0;
+        let is_ahead = agents.cold.is_cold(agent) && from <= clock;
+        let passed: &[Interval] = if is_ahead { agents.cold.bounds(agent) } else { &[] };
+        let since = if is_ahead { clock } else { from.min(clock) };
+        let mut fill = |state: usize, bound: Interval| {
             if out[state].is_whole() {
-                out[state] = bound;
+                out[state] = passed.get(state).map_or(bound, |passed| passed.hull(bound));
             }
-        });
+        };
+        if is_ahead && to <= clock {
+            passed.iter().enumerate().for_each(|(state, &bound)| fill(state, bound));
+        } else {
+            enclosures.states(agents, groups, agent, (since, to), &mut fill);
+        }
     }
 
     /// Bounds of the rate of one state of an agent from `from` on, which is not before the present, whatever its states are;

@@ -2,9 +2,10 @@
 
 use crate::math::lanes::{Level, Work};
 use crate::math::{N_LANES, Numbers, Wide};
-use crate::runtime::herd::{FEW, Herd, NOBODY};
+use crate::runtime::herd::Herd;
 use crate::runtime::leap::{LeapRows, Leaps, STATES_MAX};
 use crate::runtime::solve::segment::Segment;
+use crate::runtime::stretch::{FEW, NOBODY};
 
 impl Herd<'_> {
     /// Tells the states at `t` of the agents at some places, whose ways are known from there or before.

@@ -45,6 +45,33 @@ pub struct Tracks {
     places: Vec<u32>,
 }
 
+/// Steps of several agents that are to be kept, those of each in order.
+#[derive(Clone, Debug, Default)]
+pub struct Kept {
+    steps: Vec<TrackStep>,
+    /// The place of each.
+    places: Vec<u32>,
+    /// For each, the states at its end, then the terms of each state.
+    values: Vec<f64>,
+}
+
+impl Kept {
+    /// Adds a step of length `h`: the states at its end, and the terms of the series.
+    pub fn push(
+        &mut self,
+        place: usize,
+        (start, h, end): (f64, f64, f64),
+        ratio: f64,
+        x_end: impl Iterator<Item = f64>,
+        terms: impl Iterator<Item = f64>,
+    ) {
+        self.steps.push(TrackStep { start, h, end, ratio, next: NONE });
+        self.places.push(place as u32);
+        self.values.extend(x_end);
+        self.values.extend(terms);
+    }
+}
+
 impl Tracks {
     /// No tracks, of agents with `n_states` states and as many series of `n_terms` terms.
     pub fn new(n_states: usize, n_terms: usize) -> Self {
@@ -97,26 +124,20 @@ impl Tracks {
         }
     }
 
-    /// Adds a step of length `h` to a track: the states at its end, and the terms of the series.
-    pub fn push(
-        &mut self,
-        place: usize,
-        (start, h, end): (f64, f64, f64),
-        ratio: f64,
-        x_end: impl Iterator<Item = f64>,
-        terms: impl Iterator<Item = f64>,
-    ) {
-        let number = self.steps.len() as u32;
-        self.steps.push(TrackStep { start, h, end, ratio, next: NONE });
-        self.values.extend(x_end);
-        self.values.extend(terms);
-        let track = &mut self.tracks[place];
-        if track.last == NONE {
-            track.first = number;
-        } else {
-            self.steps[track.last as usize].next = number;
+    /// Adds steps to the tracks of their places.
+    pub fn append(&mut self, kept: Kept) {
+        for (&place, step) in kept.places.iter().zip(kept.steps) {
+            let number = self.steps.len() as u32;
+            self.steps.push(step);
+            let track = &mut self.tracks[place as usize];
+            if track.last == NONE {
+                track.first = number;
+            } else {
+                self.steps[track.last as usize].next = number;
+            }
+            track.last = number;
         }
-        track.last = number;
+        self.values.extend_from_slice(&kept.values);
     }
 
     /// What is beyond the present of the agent at `place` is void.

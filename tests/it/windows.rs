@@ -6,5 +6,6 @@ mod crowd;
 mod arena;
 mod lookouts;
 mod mates;
+mod threads;
 mod written;
 mod generated;

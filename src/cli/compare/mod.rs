@@ -114,7 +114,7 @@ fn run_cell(
     tell(&sources, &diagnostics);
     let Some(model) = model else { return Ok(Exit::ModelErrors) };
     refuse_endless(&model)?;
-    let limits = limits_of(&model, &arguments.limits)?.run;
+    let limits = limits_of(&model, &arguments.limits, Some(1))?.run;
     let machinery = &model.run.machinery;
     let algorithms: Vec<Algorithm> = (arguments.algorithms.iter())
         .map(|&name| algorithm(name, Form::Plain, &arguments.paper, machinery, true))

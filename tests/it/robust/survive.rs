@@ -152,6 +152,7 @@ fn limits() -> Limits {
     Limits {
         microsteps_max: 50,
         generations_max: 50,
+        threads_max: 1,
         zeno_events: 50,
         steps_max: 200,
         agents_max: 200,
