@@ -11,6 +11,7 @@ use crate::runtime::detect::{AtomCurve, CurveRows};
 use crate::runtime::guards::{Guards, allowed};
 use crate::runtime::population::{ABSENT, Agents, Slots};
 use crate::runtime::present::Present;
+use crate::runtime::robustness::{Extreme, Robustness};
 use crate::runtime::solve::roots::Curve;
 use crate::runtime::solve::time_resolution;
 use crate::runtime::truth::{self, Side, Truths};
@@ -42,33 +43,28 @@ pub struct Spot {
 /// A margin over a stretch of time.
 #[derive(Clone, Copy, Debug)]
 pub struct Bound {
-    /// Contains all its values.
-    pub value: Interval,
+    /// None is less.
+    pub least: Robustness,
+    /// None is greater.
+    pub greatest: Robustness,
     /// Contains its rates, of all comparisons that may decide.
     pub slope: Interval,
+    /// Whether a comparison may decide for which zero is not enough, and whether one may for which it is.
+    pub sides: [bool; 2],
 }
 
-/// Which of several conditions decides.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Pick {
-    Least,
-    Greatest,
-}
-
-impl Pick {
-    fn prefers(self, value: f64, to: f64) -> bool {
-        match self {
-            Pick::Least => value < to,
-            Pick::Greatest => value > to,
+impl Bound {
+    /// Whether it is closed where it is zero, if this is the same all along; it is said also where it is nowhere zero.
+    pub fn closed(&self) -> Option<bool> {
+        let [open, closed] = self.sides;
+        if open != closed {
+            return Some(closed);
         }
-    }
-
-    /// The margin of nothing.
-    fn neutral(self) -> f64 {
-        match self {
-            Pick::Least => f64::INFINITY,
-            Pick::Greatest => f64::NEG_INFINITY,
+        let (least, greatest) = (self.least, self.greatest);
+        if least.value > 0.0 || least.value == 0.0 && least.closed {
+            return Some(true);
         }
+        (greatest.value < 0.0 || greatest.value == 0.0 && !greatest.closed).then_some(false)
     }
 }
 
@@ -128,12 +124,22 @@ impl<'p> Margins<'_, 'p> {
     }
 
     /// How far from zero a margin may be and still count as zero: by rounding, and by the width to which times are known.
-    pub fn slack(&mut self, spot: &Spot, when: When) -> f64 {
+    fn slack(&mut self, spot: &Spot, when: When) -> f64 {
         let (Some(atom), When::Along(t)) = (spot.atom, when) else { return 0.0 };
         let atom = &self.guard.atoms[atom];
         let rounding = self.curve(atom, &spot.slots, |curve| curve.jet_range(t, t)[0].width());
         let rounding = if rounding.is_finite() { rounding } else { 0.0 };
         rounding + spot.slope.abs() * time_resolution(t)
+    }
+
+    /// The margin of a spot, with its slack.
+    pub fn robustness(&mut self, spot: &Spot, when: When) -> Robustness {
+        Robustness { value: spot.value, closed: spot.closed, slack: self.slack(spot, when) }
+    }
+
+    /// Whether a margin counts as zero.
+    pub fn is_zero(&mut self, spot: &Spot, when: When) -> bool {
+        spot.value == 0.0 || spot.value.is_finite() && spot.value.abs() <= self.slack(spot, when)
     }
 
     /// The names of the agents that quantifiers bind where a margin is decided, outermost first.
@@ -168,33 +174,51 @@ impl<'p> Margins<'_, 'p> {
                 settled(truth, slots)
             }
             Condition::Atom(atom) => self.comparison(*atom, slots, when),
-            Condition::And(all) => self.pick(Pick::Least, all, slots, when),
-            Condition::Or(all) => self.pick(Pick::Greatest, all, slots, when),
-            Condition::Forall(quantified) => self.pick_agent(Pick::Least, quantified, slots, when),
-            Condition::Exists(quantified) => self.pick_agent(Pick::Greatest, quantified, slots, when),
+            Condition::And(all) => self.pick(Extreme::Least, all, slots, when),
+            Condition::Or(all) => self.pick(Extreme::Greatest, all, slots, when),
+            Condition::Forall(quantified) => self.pick_agent(Extreme::Least, quantified, slots, when),
+            Condition::Exists(quantified) => self.pick_agent(Extreme::Greatest, quantified, slots, when),
         }
     }
 
-    fn pick(&mut self, pick: Pick, all: &[Condition], slots: &Slots, when: When) -> Spot {
+    fn pick(&mut self, pick: Extreme, all: &[Condition], slots: &Slots, when: When) -> Spot {
         let mut best: Option<Spot> = None;
         for condition in all {
             let spot = self.spot(condition, slots, when);
-            if best.as_ref().is_none_or(|best| pick.prefers(spot.value, best.value)) {
+            if best.as_ref().is_none_or(|best| self.is_preferred(pick, &spot, best, when)) {
                 best = Some(spot);
             }
         }
-        best.unwrap_or_else(|| settled(pick == Pick::Least, slots))
+        best.unwrap_or_else(|| settled(pick == Extreme::Least, slots))
     }
 
-    fn pick_agent(&mut self, pick: Pick, quantified: &Quantified, slots: &Slots, when: When) -> Spot {
+    fn pick_agent(&mut self, pick: Extreme, quantified: &Quantified, slots: &Slots, when: When) -> Spot {
         let mut best: Option<Spot> = None;
         for bound in self.bindings(quantified, slots) {
             let spot = self.spot(&quantified.body, &bound, when);
-            if best.as_ref().is_none_or(|best| pick.prefers(spot.value, best.value)) {
+            if best.as_ref().is_none_or(|best| self.is_preferred(pick, &spot, best, when)) {
                 best = Some(spot);
             }
         }
-        best.unwrap_or_else(|| settled(pick == Pick::Least, slots))
+        best.unwrap_or_else(|| settled(pick == Extreme::Least, slots))
+    }
+
+    /// Whether a margin is preferred to another one of the same time.
+    fn is_preferred(&mut self, pick: Extreme, spot: &Spot, to: &Spot, when: When) -> bool {
+        if spot.closed != to.closed {
+            let is_nearer = spot.value.abs() < to.value.abs();
+            let (near, far) = if is_nearer { (spot, to) } else { (to, spot) };
+            if self.is_zero(far, when) && self.is_zero(near, when) {
+                return spot.closed == pick.prefers_closed();
+            }
+        }
+        pick.prefers(spot.value, to.value)
+    }
+
+    /// Whether zero is enough for one comparison and not for another.
+    pub fn is_mixed(&self) -> bool {
+        let is_closed = |atom: &Atom| atom.relation == Relation::NonPositive;
+        self.guard.atoms.iter().any(is_closed) && !self.guard.atoms.iter().all(is_closed)
     }
 
     /// The slots with each agent of a quantifier's range.
@@ -249,22 +273,21 @@ impl<'p> Margins<'_, 'p> {
             Condition::Atom(atom) => self.comparison_bound(*atom, slots, s, e),
             Condition::And(all) => {
                 let all = all.iter().map(|condition| self.bound(condition, slots, s, e)).collect::<Vec<_>>();
-                together(Pick::Least, &all)
+                together(Extreme::Least, &all)
             }
             Condition::Or(all) => {
                 let all = all.iter().map(|condition| self.bound(condition, slots, s, e)).collect::<Vec<_>>();
-                together(Pick::Greatest, &all)
+                together(Extreme::Greatest, &all)
             }
             Condition::Forall(quantified) | Condition::Exists(quantified) => {
                 let bindings = self.bindings(quantified, slots).into_iter();
                 let all: Vec<Bound> =
                     bindings.map(|bound| self.bound(&quantified.body, &bound, s, e)).collect();
                 let forall = matches!(condition, Condition::Forall(_));
-                together(if forall { Pick::Least } else { Pick::Greatest }, &all)
+                together(if forall { Extreme::Least } else { Extreme::Greatest }, &all)
             }
             Condition::Constant(_) | Condition::Discrete(_) | Condition::Rising(..) => {
-                let value = self.spot(condition, slots, When::Now).value;
-                Bound { value: Interval { lo: value, hi: value }, slope: Interval::ZERO }
+                settled_bound(self.spot(condition, slots, When::Now).value > 0.0)
             }
         }
     }
@@ -276,8 +299,7 @@ impl<'p> Margins<'_, 'p> {
         let (jet, [g, rate, second]) =
             self.curve(atom, slots, |curve| (curve.jet(middle), curve.jet_range(s, e)));
         if jet[0].is_nan() && atom.slots.iter().any(|&slot| slots[slot] == ABSENT) {
-            let value = Interval { lo: f64::NEG_INFINITY, hi: f64::NEG_INFINITY };
-            return Bound { value, slope: Interval::ZERO };
+            return settled_bound(false);
         }
         let r = 0.5 * (e - s);
         let rounding = 4.0 * f64::EPSILON * jet[0].abs();
@@ -292,7 +314,18 @@ impl<'p> Margins<'_, 'p> {
         if value.lo > value.hi {
             value = g;
         }
-        Bound { value: negative(value), slope: negative(rate) }
+        let is_clear = value.lo > 0.0 || value.hi < 0.0;
+        if is_clear && g.contains_zero() && self.is_mixed() {
+            // What counts as zero does so in the bounds, too.
+            let width = self.curve(atom, slots, |curve| curve.jet_range(middle, middle)[0].width());
+            let slack = width + size(rate) * time_resolution(e);
+            if slack.is_finite() && value.lo.max(-value.hi) <= slack {
+                value = Interval { lo: value.lo.min(0.0), hi: value.hi.max(0.0) };
+            }
+        }
+        let closed = atom.relation == Relation::NonPositive;
+        let [least, greatest] = [-value.hi, -value.lo].map(|value| Robustness::exact(value, closed));
+        Bound { least, greatest, slope: negative(rate), sides: [!closed, closed] }
     }
 }
 
@@ -306,16 +339,23 @@ fn settled(truth: bool, slots: &Slots) -> Spot {
     Spot { value, slope: 0.0, closed: true, atom: None, slots: slots.clone() }
 }
 
+/// Its bound.
+fn settled_bound(truth: bool) -> Bound {
+    let value = Robustness::exact(if truth { f64::INFINITY } else { f64::NEG_INFINITY }, true);
+    Bound { least: value, greatest: value, slope: Interval::ZERO, sides: [false, true] }
+}
+
 /// The bound of the least, or greatest, of several.
-fn together(pick: Pick, all: &[Bound]) -> Bound {
-    let neutral = Interval { lo: pick.neutral(), hi: pick.neutral() };
-    let value = all.iter().fold(neutral, |value, bound| match pick {
-        Pick::Least => Interval { lo: value.lo.min(bound.value.lo), hi: value.hi.min(bound.value.hi) },
-        Pick::Greatest => Interval { lo: value.lo.max(bound.value.lo), hi: value.hi.max(bound.value.hi) },
-    });
-    let may_decide = |bound: &&Bound| bound.value.lo <= value.hi && bound.value.hi >= value.lo;
-    let slopes = all.iter().filter(may_decide).map(|bound| bound.slope);
+fn together(pick: Extreme, all: &[Bound]) -> Bound {
+    let neutral = Robustness::exact(pick.neutral(), true);
+    let of_all = |end: fn(&Bound) -> Robustness| all.iter().map(end).fold(neutral, |a, b| pick.of(a, b));
+    let (least, greatest) = (of_all(|bound| bound.least), of_all(|bound| bound.greatest));
+    let may_decide =
+        |bound: &&Bound| bound.least.value <= greatest.value && bound.greatest.value >= least.value;
+    let decide = all.iter().filter(may_decide);
+    let slopes = decide.clone().map(|bound| bound.slope);
     let slope =
         slopes.reduce(|hull, slope| Interval { lo: hull.lo.min(slope.lo), hi: hull.hi.max(slope.hi) });
-    Bound { value, slope: slope.unwrap_or(Interval::ZERO) }
+    let sides = [0, 1].map(|side| decide.clone().any(|bound| bound.sides[side]));
+    Bound { least, greatest, slope: slope.unwrap_or(Interval::ZERO), sides }
 }

@@ -75,6 +75,7 @@ mod repetition;
 mod mail;
 mod record;
 mod neighbours;
+mod robustness;
 mod signal;
 mod margins;
 mod lookout;

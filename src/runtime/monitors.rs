@@ -7,10 +7,11 @@
 use crate::codegen::program::ClaimSystem;
 use crate::runtime::engine::Engine;
 use crate::runtime::lookout::Lookout;
-use crate::runtime::margins::{Margins, When};
-use crate::runtime::signal::{Origin, Piece};
+use crate::runtime::margins::{Bound, Margins, Spot, When};
+use crate::runtime::robustness::{Extreme, Robustness};
+use crate::runtime::signal::{ACCURACY, Origin, Piece};
 use crate::runtime::solve::time_resolution;
-use crate::runtime::verdicts::{ACCURACY, Decider, Extreme, Found, Trace, Watched};
+use crate::runtime::verdicts::{Decider, Found, Trace, Watched};
 
 /// After so many pieces of one stretch the best value so far is taken.
 const PIECES_MAX: usize = 100_000;
@@ -20,6 +21,9 @@ const BEYOND: f64 = 1e-6;
 
 /// How often a shorter stretch is tried over which a member does not come to decide.
 const HALVES_MAX: usize = 8;
+
+/// So many pieces of one stretch are halved because their margin may be zero on both sides.
+const SIDED_MAX: usize = 1000;
 
 /// What is not better than the best by this share of it is not looked for.
 const SHARE: f64 = 1e-14;
@@ -126,8 +130,8 @@ impl<'p> Engine<'p, '_> {
         let mut margins = self.margins(goal);
         let spot = margins.at(when);
         let goal = Found::new(&mut margins, &spot, t, when);
-        let here = least.as_ref().filter(|least| least.value < goal.value).unwrap_or(&goal);
-        if t >= from && found.as_ref().is_none_or(|found| here.value > found.value) {
+        let here = least.as_ref().filter(|least| goal.margin.exceeds(least.margin)).unwrap_or(&goal);
+        if t >= from && found.as_ref().is_none_or(|found| here.margin.exceeds(found.margin)) {
             *found = Some(here.clone());
         }
         if when == When::Now {
@@ -149,23 +153,27 @@ impl<'p> Engine<'p, '_> {
         while let Some((x, y)) = pieces.pop() {
             looked_at += 1;
             self.attain(pair, x, When::Along(x), x, (least, found));
-            let best = found.as_ref().map_or(f64::NEG_INFINITY, |found| found.value);
-            let floor = least.as_ref().map_or(f64::INFINITY, |least| least.value);
-            let held = self.margins(before).over(x, y).value;
-            let reached = self.margins(goal).over(x, y).value;
-            let most = reached.hi.min(floor);
-            let lowest = floor.min(held.lo);
-            if most <= best + SHARE * best.abs() || reached.lo >= floor {
+            let known = |found: &Option<Found>, extreme: Extreme| {
+                found.as_ref().map_or(Robustness::exact(extreme.neutral(), true), |found| found.margin)
+            };
+            let best = known(found, Extreme::Greatest);
+            let floor = known(least, Extreme::Least);
+            let held = self.margins(before).over(x, y);
+            let reached = self.margins(goal).over(x, y);
+            let most = Extreme::Least.of(reached.greatest, floor);
+            let lowest = Extreme::Least.of(floor, held.least);
+            let sides = [reached.sides[0] || !floor.closed, reached.sides[1] || floor.closed];
+            if !may_improve(Extreme::Greatest, most, &sides, best) || !floor.exceeds(reached.least) {
                 // Nothing better here; or only `before` counts, which never rises.
-            } else if reached.hi <= lowest || held.lo >= floor {
+            } else if !reached.greatest.exceeds(lowest) || !floor.exceeds(held.least) {
                 // Only the goal counts, or the least so far.
                 let mut top = None;
                 search(&mut self.margins(goal), Extreme::Greatest, (x, y), &mut top);
                 let top = match (top, &*least) {
-                    (Some(top), Some(least)) if least.value < top.value => Some(least.clone()),
+                    (Some(top), Some(least)) if top.margin.exceeds(least.margin) => Some(least.clone()),
                     (top, _) => top,
                 };
-                if top.as_ref().is_some_and(|top| top.value > best) {
+                if top.as_ref().is_some_and(|top| top.margin.exceeds(best)) {
                     *found = top;
                 }
             } else if y - x > time_resolution(y) && looked_at < PIECES_MAX {
@@ -215,11 +223,14 @@ fn watch_members(
         }
         margins.only = Some(member);
         let known = margins.known_from(s).filter(|&known| known > e);
-        let best = found.as_ref().map_or(f64::INFINITY, |found| extreme.sign() * found.value);
+        let best = found.as_ref().map(|found| found.margin);
         let stays = |until: f64| {
-            let value = margins.over(s, until).value;
-            let least = if extreme == Extreme::Least { value.lo } else { -value.hi };
-            least > best
+            let bound = margins.over(s, until);
+            let is_worse = |best: Robustness| {
+                let end = end_of(&bound, extreme);
+                extreme.prefers(best.value, end.value) && !may_change_side(extreme, end, &bound.sides, best)
+            };
+            best.is_some_and(is_worse)
         };
         match known.and_then(|known| farthest((s, e), known, stays)) {
             Some(until) => looked_at.push((member, until)),
@@ -243,47 +254,91 @@ fn improves(value: f64, least: f64) -> bool {
     value < least && (least.is_infinite() || least - value > SHARE * least.abs())
 }
 
+/// The end of a bound at which the extreme may be.
+fn end_of(bound: &Bound, extreme: Extreme) -> Robustness {
+    match extreme {
+        Extreme::Least => bound.least,
+        Extreme::Greatest => bound.greatest,
+    }
+}
+
+/// Whether margins up to `end`, on these sides where they are zero, may be better than the best so far.
+fn may_improve(extreme: Extreme, end: Robustness, sides: &[bool; 2], best: Robustness) -> bool {
+    let sign = extreme.sign();
+    improves(sign * end.value, sign * best.value) || may_change_side(extreme, end, sides, best)
+}
+
+/// Whether the best so far is zero, and they may be zero on the better side.
+fn may_change_side(extreme: Extreme, end: Robustness, sides: &[bool; 2], best: Robustness) -> bool {
+    let (end, best, has_better) = match extreme {
+        Extreme::Least => (end.turned(), best.turned(), sides[0]),
+        Extreme::Greatest => (end, best, sides[1]),
+    };
+    let is_reached = end.value > 0.0 || end.closed && end.value >= -best.slack;
+    has_better && best.is_zero() && !best.closed && is_reached
+}
+
+/// Whether a margin is better than the best so far, by more than rounding, or zero as that is and on the better side.
+fn is_better(
+    margins: &mut Margins<'_, '_>,
+    extreme: Extreme,
+    (spot, when): (&Spot, When),
+    best: Robustness,
+) -> bool {
+    if spot.closed != best.closed && best.is_zero() && margins.is_zero(spot, when) {
+        return spot.closed == extreme.prefers_closed();
+    }
+    improves(extreme.sign() * spot.value, extreme.sign() * best.value)
+}
+
 /// Takes the margin at `t` if it is better.
 fn consider(margins: &mut Margins<'_, '_>, extreme: Extreme, t: f64, when: When, found: &mut Option<Found>) {
     let spot = margins.at(when);
-    let sign = extreme.sign();
-    if found.as_ref().is_none_or(|found| improves(sign * spot.value, sign * found.value)) {
+    if found.as_ref().is_none_or(|found| is_better(margins, extreme, (&spot, when), found.margin)) {
         *found = Some(Found::new(margins, &spot, t, when));
     }
 }
 
 /// The extreme of a margin over [s, e], if it is better than what was found before.
 fn search(margins: &mut Margins<'_, '_>, extreme: Extreme, (s, e): (f64, f64), found: &mut Option<Found>) {
-    let sign = extreme.sign();
-    let (mut best, mut time) = (found.as_ref().map_or(f64::INFINITY, |found| sign * found.value), None);
-    let mut look = |margins: &mut Margins<'_, '_>, t: f64, best: &mut f64| {
-        let value = sign * margins.at(When::Along(t)).value;
-        if improves(value, *best) || found.is_none() && time.is_none() {
-            (*best, time) = (value, Some(t));
+    let mut best = found.as_ref().map(|found| found.margin);
+    let mut time = None;
+    let mut look = |margins: &mut Margins<'_, '_>, t: f64| {
+        let when = When::Along(t);
+        let spot = margins.at(when);
+        if best.is_none_or(|best| is_better(margins, extreme, (&spot, when), best)) {
+            (best, time) = (Some(margins.robustness(&spot, when)), Some(t));
         }
+        best.expect("a margin that nothing is found beside is the best")
     };
-    look(margins, s, &mut best);
-    look(margins, e, &mut best);
+    look(margins, s);
+    let mut best = look(margins, e);
     let mut pieces = vec![(s, e)];
     let mut looked_at = 0;
     while let Some((a, b)) = pieces.pop() {
         looked_at += 1;
         let bound = margins.over(a, b);
-        let least = if extreme == Extreme::Least { bound.value.lo } else { -bound.value.hi };
+        let may_improve = may_improve(extreme, end_of(&bound, extreme), &bound.sides, best);
         let monotone = bound.slope.lo >= 0.0 || bound.slope.hi <= 0.0;
-        if least >= best - SHARE * best.abs() || monotone || b - a <= time_resolution(b) {
+        if !may_improve || monotone || b - a <= time_resolution(b) {
             continue;
         }
         if looked_at > PIECES_MAX {
             break;
         }
         let middle = 0.5 * (a + b);
-        look(margins, middle, &mut best);
+        best = look(margins, middle);
         pieces.extend([(middle, b), (a, middle)]);
     }
     if let Some(time) = time {
-        let time = settle(margins, sign, time, (s, e));
-        let spot = margins.at(When::Along(time));
+        let settled = settle(margins, extreme.sign(), time, (s, e));
+        let spot = margins.at(When::Along(settled));
+        // As near to it a zero may be on the other side.
+        let (time, spot) = if spot.closed == best.closed {
+            (settled, spot)
+        } else {
+            (time, margins.at(When::Along(time)))
+        };
         *found = Some(Found::new(margins, &spot, time, When::Along(time)));
     }
 }
@@ -313,6 +368,7 @@ fn settle(margins: &mut Margins<'_, '_>, sign: f64, t: f64, (s, e): (f64, f64)) 
 /// Adds the margin over [s, e] to a trace: by cubics through both ends of pieces, halved until each hits it inside, too.
 fn follow(margins: &mut Margins<'_, '_>, (s, e): (f64, f64), trace: &mut Trace) {
     let mut pending = vec![(s, e)];
+    let mut n_sided = 0;
     while let Some((a, b)) = pending.pop() {
         let spots = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| {
             let t = a + share * (b - a);
@@ -320,23 +376,28 @@ fn follow(margins: &mut Margins<'_, '_>, (s, e): (f64, f64), trace: &mut Trace) 
         });
         let [first, .., last] = &spots;
         let (values, slopes) = ([first.1.value, last.1.value], [first.1.slope, last.1.slope]);
+        let of_middle = spots[2].1.closed;
+        let side = if margins.is_mixed() { margins.over(a, b).closed() } else { Some(of_middle) };
+        let closed = side.unwrap_or(of_middle);
         let piece = if values[0].is_finite() && values[1].is_finite() {
-            Piece::through(a, b, values, slopes)
+            Piece::through(a, b, values, slopes, closed)
         } else {
-            Piece::constant(a, b, spots[2].1.value, Origin::Later(0.0))
+            Piece::constant(a, b, Robustness::exact(spots[2].1.value, closed), Origin::Later(0.0))
         };
         let hits = spots.iter().all(|(t, spot)| {
             let miss = (piece.at(*t) - spot.value).abs();
             piece.at(*t) == spot.value || miss <= ACCURACY * spot.value.abs().max(1.0)
         });
-        if !hits && b - a > time_resolution(b) {
+        let has_sides = hits && side.is_none() && n_sided < SIDED_MAX;
+        if (!hits || has_sides) && b - a > time_resolution(b) {
+            n_sided += usize::from(has_sides);
             let middle = spots[2].0;
             pending.extend([(middle, b), (a, middle)]);
             continue;
         }
         trace.pieces.push(piece);
         let spot = &spots[2].1;
-        let decider = Decider { from: a, closed: spot.closed, agents: margins.bound_agents(spot) };
+        let decider = Decider { from: a, closed, agents: margins.bound_agents(spot) };
         let same = |known: &Decider| known.closed == decider.closed && known.agents == decider.agents;
         if !trace.deciders.last().is_some_and(same) {
             trace.deciders.push(decider);

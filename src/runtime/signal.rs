@@ -6,6 +6,11 @@
 
 use smallvec::SmallVec;
 
+use crate::runtime::robustness::Robustness;
+
+/// How well the pieces of a margin hit it, as a share of it (of 1, if it is less); so near to zero it counts as zero.
+pub const ACCURACY: f64 = 1e-10;
+
 /// Where a value of a signal comes from in the innermost one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Origin {
@@ -34,23 +39,49 @@ pub struct Piece {
     pub end: f64,
     /// Its coefficients; an infinite c0 stands alone.
     pub cubic: [f64; 4],
+    /// Whether it is closed where it is zero.
+    pub closed: bool,
     /// Where its values come from.
     pub origin: Origin,
 }
 
+/// A value of a signal, when it is, and where it comes from.
+#[derive(Clone, Copy, Debug)]
+pub struct Top {
+    /// When, s.
+    pub time: f64,
+    /// The value.
+    pub margin: Robustness,
+    /// Where it comes from.
+    pub origin: Origin,
+}
+
+impl Top {
+    /// The greater one, of two equal ones the first.
+    fn or_greater(self, other: Self) -> Self {
+        if other.margin.exceeds(self.margin) { other } else { self }
+    }
+
+    /// The same value all along.
+    fn along(self, start: f64, end: f64) -> Piece {
+        Piece::constant(start, end, self.margin, Origin::At(self.origin.time(self.time)))
+    }
+}
+
 impl Piece {
     /// The cubic with these values and slopes at its ends.
-    pub fn through(start: f64, end: f64, values: [f64; 2], slopes: [f64; 2]) -> Self {
+    pub fn through(start: f64, end: f64, values: [f64; 2], slopes: [f64; 2], closed: bool) -> Self {
         let h = end - start;
         let rise = (values[1] - values[0]) / h;
         let square = (3.0 * rise - 2.0 * slopes[0] - slopes[1]) / h;
         let third = (slopes[0] + slopes[1] - 2.0 * rise) / (h * h);
-        Self { start, end, cubic: [values[0], slopes[0], square, third], origin: Origin::Later(0.0) }
+        let cubic = [values[0], slopes[0], square, third];
+        Self { start, end, cubic, closed, origin: Origin::Later(0.0) }
     }
 
     /// The same value all along.
-    pub fn constant(start: f64, end: f64, value: f64, origin: Origin) -> Self {
-        Self { start, end, cubic: [value, 0.0, 0.0, 0.0], origin }
+    pub fn constant(start: f64, end: f64, margin: Robustness, origin: Origin) -> Self {
+        Self { start, end, cubic: [margin.value, 0.0, 0.0, 0.0], closed: margin.closed, origin }
     }
 
     /// Its value at a time.
@@ -61,6 +92,18 @@ impl Piece {
         }
         let h = t - self.start;
         c0 + h * (c1 + h * (c2 + h * c3))
+    }
+
+    /// Its margin at a time.
+    fn margin(&self, t: f64) -> Robustness {
+        let value = self.at(t);
+        let slack = if value.is_finite() { ACCURACY * value.abs().max(1.0) } else { 0.0 };
+        Robustness { value, closed: self.closed, slack }
+    }
+
+    /// Its value at a time, with where that comes from.
+    fn value(&self, time: f64) -> Top {
+        Top { time, margin: self.margin(time), origin: self.origin }
     }
 
     /// The same values so much earlier.
@@ -81,11 +124,11 @@ impl Piece {
         } else {
             [self.at(start), c1 + h * (2.0 * c2 + 3.0 * h * c3), c2 + 3.0 * h * c3, c3]
         };
-        Self { start, end, cubic, origin: self.origin }
+        Self { start, end, cubic, ..*self }
     }
 
     fn turned(&self) -> Self {
-        Self { cubic: self.cubic.map(|c| -c), ..*self }
+        Self { cubic: self.cubic.map(|c| -c), closed: !self.closed, ..*self }
     }
 
     /// The times within it at which its slope is zero.
@@ -108,10 +151,9 @@ impl Piece {
         (1..ends.len()).map(move |k| piece.part(ends[k - 1], ends[k]))
     }
 
-    /// The time and the value of its greatest value; it is monotone.
-    fn top(&self) -> (f64, f64) {
-        let (first, last) = (self.at(self.start), self.at(self.end));
-        if first >= last { (self.start, first) } else { (self.end, last) }
+    /// Its greatest value; it is monotone.
+    fn top(&self) -> Top {
+        self.value(self.start).or_greater(self.value(self.end))
     }
 }
 
@@ -137,15 +179,12 @@ pub fn turned(signal: &[Piece]) -> Vec<Piece> {
     signal.iter().map(Piece::turned).collect()
 }
 
-/// The greatest value over [from, to], and when it is; none where the signal is not.
-pub fn greatest(signal: &[Piece], [from, to]: [f64; 2]) -> Option<(f64, f64, Origin)> {
+/// The greatest value over [from, to]; none where the signal is not.
+pub fn greatest(signal: &[Piece], [from, to]: [f64; 2]) -> Option<Top> {
     let inside = signal.iter().filter(|piece| piece.end >= from && piece.start <= to);
     let parts = inside.map(|piece| piece.part(piece.start.max(from), piece.end.min(to)));
-    let tops = parts.flat_map(|part| part.monotone().collect::<Vec<_>>()).map(|part| {
-        let (time, value) = part.top();
-        (time, value, part.origin)
-    });
-    tops.reduce(|best, next| if next.1 > best.1 { next } else { best })
+    let tops = parts.flat_map(|part| part.monotone().collect::<Vec<_>>()).map(|part| part.top());
+    tops.reduce(Top::or_greater)
 }
 
 /// The signal of the greatest values over [t + c, t + d]; windows end where the signal does, at the latest.
@@ -159,10 +198,7 @@ pub fn greatest_ahead(signal: &[Piece], [c, d]: [f64; 2]) -> Vec<Piece> {
     if begin == end - c {
         // The window is reached at one time only.
         let best = greatest(signal, [begin + c, end]);
-        let piece = |(time, value, origin): (f64, f64, Origin)| {
-            Piece::constant(begin, begin, value, Origin::At(origin.time(time)))
-        };
-        return best.into_iter().map(piece).collect();
+        return best.into_iter().map(|top| top.along(begin, begin)).collect();
     }
     let peaks = Peaks::new(&pieces);
     let mut breaks: Vec<f64> = pieces
@@ -184,18 +220,14 @@ pub fn greatest_ahead(signal: &[Piece], [c, d]: [f64; 2]) -> Vec<Piece> {
             candidates.push(pieces[right].earlier(d).part(p, q));
         }
         let whole = if middle + d < end { left + 1..right } else { left + 1..right + 1 };
-        let mut tops: SmallVec<[(f64, f64, Origin); 3]> = SmallVec::new();
+        let mut tops: SmallVec<[Top; 3]> = SmallVec::new();
         tops.extend(peaks.greatest(whole));
         if left != right || middle + d >= end {
-            tops.push((pieces[left].end, pieces[left].at(pieces[left].end), pieces[left].origin));
+            tops.push(pieces[left].value(pieces[left].end));
             let right = &pieces[right];
-            let at = if middle + d < end { right.start } else { right.end };
-            tops.push((at, right.at(at), right.origin));
+            tops.push(right.value(if middle + d < end { right.start } else { right.end }));
         }
-        candidates.extend(
-            tops.iter()
-                .map(|&(time, value, origin)| Piece::constant(p, q, value, Origin::At(origin.time(time)))),
-        );
+        candidates.extend(tops.iter().map(|top| top.along(p, q)));
         envelope(&candidates, p, q, &mut ahead);
     }
     ahead
@@ -221,30 +253,29 @@ pub fn until_ahead(before: &[Piece], goal: &[Piece], [c, d]: [f64; 2]) -> Vec<Pi
 /// The same with all times to come for a window; from the end backwards.
 fn ever_reached(before: &[Piece], goal: &[Piece]) -> Vec<Piece> {
     let mut signal: Vec<Piece> = Vec::new();
-    let (mut later, mut at) = (f64::NEG_INFINITY, 0.0);
+    let mut later =
+        Top { time: 0.0, margin: Robustness::exact(f64::NEG_INFINITY, true), origin: Origin::At(0.0) };
     for [p, q] in beside(before, goal).into_iter().rev() {
         let (x, y) = (p.start, p.end);
-        let (p_end, q_end) = (p.at(y), q.at(y));
+        let (p_end, q_end) = (p.value(y), q.value(y));
         let is_rising = |piece: &Piece| piece.at(y) > piece.at(x);
-        let end = Piece::constant(x, y, q_end, Origin::At(q.origin.time(y)));
-        let after = Piece::constant(x, y, later, Origin::At(at));
+        let (end, after) = (q_end.along(x, y), later.along(x, y));
         let mut found = Vec::new();
         if is_rising(&p) {
             // What holds is least at once: the goal now, or the best to come as far as that holds.
-            let to_come = if is_rising(&q) && q_end > later { end } else { after };
+            let to_come = if is_rising(&q) && q_end.margin.exceeds(later.margin) { end } else { after };
             let held = lesser(&[p], &[to_come]);
             held.iter().for_each(|held| {
                 envelope(&[q.part(held.start, held.end), *held], held.start, held.end, &mut found);
             });
         } else {
             let middle = 0.5 * (x + y);
-            let now = if is_rising(&q) && q.at(middle) < p.at(middle) { end } else { q };
-            let least = Piece::constant(x, y, p_end, Origin::At(p.origin.time(y)));
-            let held = if p_end < later { least } else { after };
+            let now = if is_rising(&q) && p.margin(middle).exceeds(q.margin(middle)) { end } else { q };
+            let held = if later.margin.exceeds(p_end.margin) { p_end.along(x, y) } else { after };
             envelope(&[now, held], x, y, &mut found);
         }
         if let Some(first) = found.first() {
-            (later, at) = (first.at(x), first.origin.time(x));
+            later = first.value(x);
         }
         signal.extend(found.into_iter().rev());
     }
@@ -310,9 +341,21 @@ fn envelope(candidates: &[Piece], p: f64, q: f64, found: &mut Vec<Piece>) {
     cuts.sort_by(f64::total_cmp);
     cuts.dedup();
     for pair in cuts.windows(2) {
-        let middle = 0.5 * (pair[0] + pair[1]);
-        let best = candidates.iter().max_by(|a, b| a.at(middle).total_cmp(&b.at(middle)));
-        found.extend(best.map(|best| best.part(pair[0], pair[1])));
+        let (from, to) = (pair[0], pair[1]);
+        let middle = 0.5 * (from + to);
+        let greater = |a, b| if Piece::margin(a, middle).exceeds(Piece::margin(b, middle)) { a } else { b };
+        let Some(best) = candidates.iter().reduce(greater) else { return };
+        // Where it meets others at zero, it is closed there if one of them is.
+        let [first, last] = [from, to].map(|t| {
+            let is_met = |other: &Piece| other.closed && other.margin(t).is_zero();
+            best.closed || best.margin(t).is_zero() && candidates.iter().any(is_met)
+        });
+        if first == last {
+            found.push(Piece { closed: first, ..best.part(from, to) });
+        } else {
+            found.push(Piece { closed: first, ..best.part(from, middle) });
+            found.push(Piece { closed: last, ..best.part(middle, to) });
+        }
     }
 }
 
@@ -342,38 +385,30 @@ fn crossings(a: &Piece, b: &Piece, times: &mut Vec<f64>) {
 
 /// The greatest values of pieces, for any range of them: of each power of two pieces from each one on.
 struct Peaks {
-    levels: Vec<Vec<(f64, f64, Origin)>>,
+    levels: Vec<Vec<Top>>,
 }
 
 impl Peaks {
     fn new(pieces: &[Piece]) -> Self {
-        let top = |piece: &Piece| {
-            let (time, value) = piece.top();
-            (time, value, piece.origin)
-        };
-        let mut levels = vec![pieces.iter().map(top).collect::<Vec<_>>()];
+        let mut levels = vec![pieces.iter().map(Piece::top).collect::<Vec<_>>()];
         let mut width = 1;
         while 2 * width <= pieces.len() {
             let below = &levels[levels.len() - 1];
-            let level = (0..=pieces.len() - 2 * width).map(|k| higher(below[k], below[k + width])).collect();
+            let level = (0..=pieces.len() - 2 * width).map(|k| below[k].or_greater(below[k + width])).collect();
             levels.push(level);
             width *= 2;
         }
         Self { levels }
     }
 
-    fn greatest(&self, range: std::ops::Range<usize>) -> Option<(f64, f64, Origin)> {
+    fn greatest(&self, range: std::ops::Range<usize>) -> Option<Top> {
         if range.is_empty() {
             return None;
         }
         let level = range.len().ilog2() as usize;
         let of_level = &self.levels[level];
-        Some(higher(of_level[range.start], of_level[range.end - (1 << level)]))
+        Some(of_level[range.start].or_greater(of_level[range.end - (1 << level)]))
     }
-}
-
-fn higher(a: (f64, f64, Origin), b: (f64, f64, Origin)) -> (f64, f64, Origin) {
-    if b.1 > a.1 { b } else { a }
 }
 
 #[cfg(test)]
@@ -384,7 +419,7 @@ mod tests {
     fn sine() -> Vec<Piece> {
         let piece = |k: usize| {
             let [a, b] = [k, k + 1].map(|k| k as f64 / 100.0);
-            Piece::through(a, b, [a.sin(), b.sin()], [a.cos(), b.cos()])
+            Piece::through(a, b, [a.sin(), b.sin()], [a.cos(), b.cos()], true)
         };
         (0..2000).map(piece).collect()
     }
@@ -413,12 +448,12 @@ mod tests {
 
     #[test]
     fn extremes_know_when_they_are() {
-        let (time, value, origin) = greatest(&sine(), [0.5, 4.0]).unwrap();
+        let Top { time, margin: Robustness { value, .. }, origin } = greatest(&sine(), [0.5, 4.0]).unwrap();
         assert!((time - std::f64::consts::FRAC_PI_2).abs() < 1e-5 && (value - 1.0).abs() < 1e-9);
         assert_eq!(origin.time(time), time);
         // the least of the greatest over one second: at pi + 1, where both ends are as high
         let ahead = turned(&greatest_ahead(&sine(), [0.0, 1.0]));
-        let (time, value, origin) = greatest(&ahead, [0.0, 6.0]).unwrap();
+        let Top { time, margin: Robustness { value, .. }, origin } = greatest(&ahead, [0.0, 6.0]).unwrap();
         let expected = 1.5 * std::f64::consts::PI - 0.5;
         assert!((time - expected).abs() < 1e-8, "{time}");
         assert!((value + expected.sin()).abs() < 1e-9, "{value}");
@@ -431,7 +466,7 @@ mod tests {
         let wave = |f: fn(f64) -> f64, rate: fn(f64) -> f64| -> Vec<Piece> {
             let piece = |k: usize| {
                 let [a, b] = [k, k + 1].map(|k| k as f64 / 100.0);
-                Piece::through(a, b, [f(a), f(b)], [rate(a), rate(b)])
+                Piece::through(a, b, [f(a), f(b)], [rate(a), rate(b)], true)
             };
             (0..2000).map(piece).collect()
         };
@@ -464,6 +499,7 @@ mod tests {
     fn until_is_reached_by_the_jump_that_ends_what_holds() {
         let step = |first: f64, last: f64| {
             let later = Origin::Later(0.0);
+            let [first, last] = [first, last].map(|value| Robustness::exact(value, true));
             [Piece::constant(0.0, 1.0, first, later), Piece::constant(1.0, 3.0, last, later)]
         };
         let (holds, fails) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -476,8 +512,8 @@ mod tests {
     #[test]
     fn a_jump_is_no_value_between() {
         let signal = [
-            Piece::constant(0.0, 1.0, 2.0, Origin::Later(0.0)),
-            Piece::constant(1.0, 3.0, -1.0, Origin::Later(0.0)),
+            Piece::constant(0.0, 1.0, Robustness::exact(2.0, true), Origin::Later(0.0)),
+            Piece::constant(1.0, 3.0, Robustness::exact(-1.0, true), Origin::Later(0.0)),
         ];
         let ahead = greatest_ahead(&signal, [0.5, 1.0]);
         assert_eq!([0.2, 0.6, 1.4].map(|t| value(&ahead, t)), [2.0, -1.0, -1.0]);

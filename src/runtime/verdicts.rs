@@ -6,41 +6,17 @@ use crate::runtime::guards::{Guards, Origin};
 use crate::runtime::lookout::Lookout;
 use crate::runtime::margins::{Margins, Spot, When};
 use crate::runtime::observe::Verdict;
+use crate::runtime::robustness::{Extreme, Robustness};
 use crate::runtime::signal::{Piece, greatest, greatest_ahead, turned, until_ahead};
-
-/// How well the pieces of a margin hit it, as a share of it (of 1, if it is less).
-pub const ACCURACY: f64 = 1e-10;
-
-/// Which extreme is looked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extreme {
-    /// The least.
-    Least,
-    /// The greatest.
-    Greatest,
-}
-
-impl Extreme {
-    /// 1, or -1 to turn the greatest into the least.
-    pub fn sign(self) -> f64 {
-        match self {
-            Extreme::Least => 1.0,
-            Extreme::Greatest => -1.0,
-        }
-    }
-}
+use crate::runtime::solve::time_resolution;
 
 /// A margin at the time at which it is an extreme.
 #[derive(Clone, Debug)]
 pub struct Found {
     /// The margin.
-    pub value: f64,
+    pub margin: Robustness,
     /// When, s.
     pub time: f64,
-    /// It counts as zero within this.
-    slack: f64,
-    /// Whether zero is enough.
-    closed: bool,
     /// Who decides it.
     agents: Vec<(String, String)>,
 }
@@ -48,8 +24,7 @@ pub struct Found {
 impl Found {
     /// The margin of a spot.
     pub fn new(margins: &mut Margins<'_, '_>, spot: &Spot, time: f64, when: When) -> Self {
-        let slack = margins.slack(spot, when);
-        Self { value: spot.value, time, slack, closed: spot.closed, agents: margins.bound_agents(spot) }
+        Self { margin: margins.robustness(spot, when), time, agents: margins.bound_agents(spot) }
     }
 }
 
@@ -134,20 +109,13 @@ impl Inner {
         }
     }
 
-    /// Who decides the margin, which at a time of one of its conditions has this value.
-    fn decider(&self, time: f64, value: f64) -> Option<&Decider> {
+    /// Who decides the margin, which at a time of one of its conditions is this.
+    fn decider(&self, time: f64, margin: Robustness) -> Option<&Decider> {
         match self {
-            Inner::Holds(_, trace) => trace.decider(time),
-            Inner::Until { pair, .. } => {
-                let miss = |trace: &Trace| {
-                    let here = trace.pieces.iter().filter(|piece| piece.start <= time && time <= piece.end);
-                    here.map(
-                        |piece| if piece.at(time) == value { 0.0 } else { (piece.at(time) - value).abs() },
-                    )
-                    .fold(f64::INFINITY, f64::min)
-                };
-                let [before, goal] = pair;
-                if miss(&before.1) < miss(&goal.1) { before.1.decider(time) } else { goal.1.decider(time) }
+            Inner::Holds(_, trace) => trace.decider(time, margin),
+            Inner::Until { pair: [(_, before), (_, goal)], .. } => {
+                let decides = if before.miss(time, margin) < goal.miss(time, margin) { before } else { goal };
+                decides.decider(time, margin)
             }
         }
     }
@@ -167,7 +135,7 @@ pub struct Trace {
 pub struct Decider {
     /// From when on, s.
     pub from: f64,
-    /// Whether a margin of zero is enough.
+    /// Whether it is closed where it is zero.
     pub closed: bool,
     /// The agents.
     pub agents: Vec<(String, String)>,
@@ -282,10 +250,28 @@ fn until(operators: Vec<(Extreme, [f64; 2])>, [before, goal]: [usize; 2], window
 }
 
 impl Trace {
-    /// Who decides at a time.
-    fn decider(&self, time: f64) -> Option<&Decider> {
-        let number = self.deciders.partition_point(|decider| decider.from <= time).checked_sub(1)?;
-        self.deciders.get(number)
+    /// Who decides at a time at which the margin is this: the last one, or one who ends there, if it is zero on the other's side.
+    fn decider(&self, time: f64, margin: Robustness) -> Option<&Decider> {
+        let number_at = |t: f64| self.deciders.partition_point(|decider| decider.from <= t);
+        let last = number_at(time).checked_sub(1)?;
+        let width = time_resolution(time);
+        let near = number_at(time - width).saturating_sub(1)..number_at(time + width);
+        let mut same = self.deciders[near].iter().rev().filter(|decider| decider.closed == margin.closed);
+        if margin.is_zero() && self.deciders[last].closed != margin.closed {
+            return same.next().or(self.deciders.get(last));
+        }
+        self.deciders.get(last)
+    }
+
+    /// By how much it misses a margin at a time; first of all by the side at which it is zero.
+    fn miss(&self, time: f64, margin: Robustness) -> f64 {
+        let here = self.pieces.iter().filter(|piece| piece.start <= time && time <= piece.end);
+        let miss = |piece: &Piece| match piece.at(time) {
+            _ if margin.is_zero() && piece.closed != margin.closed => f64::INFINITY,
+            value if value == margin.value => 0.0,
+            value => (value - margin.value).abs(),
+        };
+        here.map(miss).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -302,28 +288,25 @@ fn found_of(operators: &[(Extreme, [f64; 2])], inner: &Inner) -> Option<Found> {
     if extreme == Extreme::Least {
         signal = turned(&signal);
     }
-    let (time, value, origin) = greatest(&signal, window)?;
-    let (value, time) = (-extreme.sign() * value, origin.time(time));
-    let Decider { closed, agents, .. } = inner.decider(time, value)?.clone();
-    let slack = if value.is_finite() { ACCURACY * value.abs().max(1.0) } else { 0.0 };
-    Some(Found { value, time, slack, closed, agents })
+    let top = greatest(&signal, window)?;
+    let time = top.origin.time(top.time);
+    let margin = if extreme == Extreme::Least { top.margin.turned() } else { top.margin };
+    let agents = inner.decider(time, margin)?.agents.clone();
+    Some(Found { margin, time, agents })
 }
 
 fn verdict(property: &Property, watched: &Watched) -> Verdict {
     let (found, nothing) = match watched {
         // Over an empty window `always` holds, and `eventually` does not.
-        Watched::Extreme { extreme, found, .. } => (found.clone(), f64::INFINITY * extreme.sign()),
+        Watched::Extreme { extreme, found, .. } => (found.clone(), extreme.neutral()),
         Watched::Until { found, .. } => (found.clone(), f64::NEG_INFINITY),
-        Watched::Nested { operators, inner } => {
-            (found_of(operators, inner), f64::INFINITY * operators[0].0.sign())
-        }
+        Watched::Nested { operators, inner } => (found_of(operators, inner), operators[0].0.neutral()),
     };
     let (name, span): (String, Span) = (property.name.clone(), property.span);
     let Some(found) = found else {
         return Verdict { name, span, holds: nothing > 0.0, margin: nothing, time: None, agents: Vec::new() };
     };
-    let on_boundary = found.value.abs() <= found.slack;
-    let holds = if on_boundary { found.closed } else { found.value > 0.0 };
-    let margin = if on_boundary { 0.0 } else { found.value };
-    Verdict { name, span, holds, margin, time: Some(found.time), agents: found.agents }
+    let margin = if found.margin.is_zero() { 0.0 } else { found.margin.value };
+    let (holds, time) = (found.margin.holds(), Some(found.time));
+    Verdict { name, span, holds, margin, time, agents: found.agents }
 }
