@@ -334,11 +334,8 @@ fn search(margins: &mut Margins<'_, '_>, extreme: Extreme, (s, e): (f64, f64), f
         let settled = settle(margins, extreme.sign(), time, (s, e));
         let spot = margins.at(When::Along(settled));
         // As near to it a zero may be on the other side.
-        let (time, spot) = if spot.closed == best.closed {
-            (settled, spot)
-        } else {
-            (time, margins.at(When::Along(time)))
-        };
+        let (time, spot) =
+            if spot.closed == best.closed { (settled, spot) } else { (time, margins.at(When::Along(time))) };
         *found = Some(Found::new(margins, &spot, time, When::Along(time)));
     }
 }

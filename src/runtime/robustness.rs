@@ -98,7 +98,10 @@ mod tests {
     #[test]
     fn at_zero_the_closed_one_is_greater() {
         let [open, closed] = [false, true].map(|closed| Robustness::exact(0.0, closed));
-        assert_eq!([closed.exceeds(open), open.exceeds(closed), closed.exceeds(closed)], [true, false, false]);
+        assert_eq!(
+            [closed.exceeds(open), open.exceeds(closed), closed.exceeds(closed)],
+            [true, false, false]
+        );
         assert_eq!(Extreme::Least.of(closed, open), open);
         assert_eq!(Extreme::Greatest.of(open, closed), closed);
         assert!(open.turned().exceeds(closed.turned()));

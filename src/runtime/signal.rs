@@ -394,7 +394,8 @@ impl Peaks {
         let mut width = 1;
         while 2 * width <= pieces.len() {
             let below = &levels[levels.len() - 1];
-            let level = (0..=pieces.len() - 2 * width).map(|k| below[k].or_greater(below[k + width])).collect();
+            let level =
+                (0..=pieces.len() - 2 * width).map(|k| below[k].or_greater(below[k + width])).collect();
             levels.push(level);
             width *= 2;
         }

@@ -4,6 +4,7 @@
 
 mod formatting;
 mod properties;
+mod zero_margins;
 mod syntax;
 mod model;
 mod calculus;

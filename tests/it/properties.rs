@@ -8,7 +8,7 @@ use crate::harness::{Case, Ended, Run, near, refused};
 
 /// The runs of a model by both forms, whose verdicts must be the same; that of the fast one.
 #[track_caller]
-fn run(text: &str) -> Run {
+pub fn run(text: &str) -> Run {
     let [fast, plain] =
         [Form::Fast, Form::Plain].map(|form| Case::new(text).algorithm(Algorithm::Masim(form)).run());
     assert_eq!(fast.verdicts.len(), plain.verdicts.len());
@@ -23,7 +23,7 @@ fn run(text: &str) -> Run {
 }
 
 #[track_caller]
-fn verdict<'r>(run: &'r Run, name: &str) -> &'r Verdict {
+pub fn verdict<'r>(run: &'r Run, name: &str) -> &'r Verdict {
     run.verdicts.iter().find(|verdict| verdict.name == name).unwrap()
 }
 
