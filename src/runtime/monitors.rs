@@ -365,7 +365,7 @@ fn settle(margins: &mut Margins<'_, '_>, sign: f64, t: f64, (s, e): (f64, f64)) 
 /// Adds the margin over [s, e] to a trace: by cubics through both ends of pieces, halved until each hits it inside, too.
 fn follow(margins: &mut Margins<'_, '_>, (s, e): (f64, f64), trace: &mut Trace) {
     let mut pending = vec![(s, e)];
-    let mut n_sided = 0;
+    let (is_mixed, mut n_sided) = (margins.is_mixed(), 0);
     while let Some((a, b)) = pending.pop() {
         let spots = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| {
             let t = a + share * (b - a);
@@ -373,10 +373,8 @@ fn follow(margins: &mut Margins<'_, '_>, (s, e): (f64, f64), trace: &mut Trace) 
         });
         let [first, .., last] = &spots;
         let (values, slopes) = ([first.1.value, last.1.value], [first.1.slope, last.1.slope]);
-        let of_middle = spots[2].1.closed;
-        let side = if margins.is_mixed() { margins.over(a, b).closed() } else { Some(of_middle) };
-        let closed = side.unwrap_or(of_middle);
-        let piece = if values[0].is_finite() && values[1].is_finite() {
+        let closed = spots[2].1.closed;
+        let mut piece = if values[0].is_finite() && values[1].is_finite() {
             Piece::through(a, b, values, slopes, closed)
         } else {
             Piece::constant(a, b, Robustness::exact(spots[2].1.value, closed), Origin::Later(0.0))
@@ -385,7 +383,10 @@ fn follow(margins: &mut Margins<'_, '_>, (s, e): (f64, f64), trace: &mut Trace) 
             let miss = (piece.at(*t) - spot.value).abs();
             piece.at(*t) == spot.value || miss <= ACCURACY * spot.value.abs().max(1.0)
         });
-        let has_sides = hits && side.is_none() && n_sided < SIDED_MAX;
+        let asks_side = hits && is_mixed && piece.reaches_zero();
+        let side = if asks_side { margins.over(a, b).closed() } else { Some(closed) };
+        piece.closed = side.unwrap_or(closed);
+        let has_sides = side.is_none() && n_sided < SIDED_MAX;
         if (!hits || has_sides) && b - a > time_resolution(b) {
             n_sided += usize::from(has_sides);
             let middle = spots[2].0;
@@ -394,7 +395,7 @@ fn follow(margins: &mut Margins<'_, '_>, (s, e): (f64, f64), trace: &mut Trace) 
         }
         trace.pieces.push(piece);
         let spot = &spots[2].1;
-        let decider = Decider { from: a, closed, agents: margins.bound_agents(spot) };
+        let decider = Decider { from: a, closed: piece.closed, agents: margins.bound_agents(spot) };
         let same = |known: &Decider| known.closed == decider.closed && known.agents == decider.agents;
         if !trace.deciders.last().is_some_and(same) {
             trace.deciders.push(decider);

@@ -94,6 +94,13 @@ impl Piece {
         c0 + h * (c1 + h * (c2 + h * c3))
     }
 
+    /// Whether it is zero somewhere.
+    pub fn reaches_zero(&self) -> bool {
+        let mut parts = self.monotone();
+        parts
+            .any(|part| part.top().margin.value >= -ACCURACY && part.turned().top().margin.value >= -ACCURACY)
+    }
+
     /// Its margin at a time.
     fn margin(&self, t: f64) -> Robustness {
         let value = self.at(t);

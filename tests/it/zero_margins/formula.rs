@@ -124,7 +124,11 @@ impl Condition {
                 } else {
                     Side::Count(depth, Box::new(Condition::random(dice, depth + 1, 0)))
                 };
-                Condition::Compare(first, *dice.pick(&RELATIONS), Side::random(dice, depth, room))
+                Condition::Compare(
+                    first,
+                    RELATIONS[dice.below(RELATIONS.len())],
+                    Side::random(dice, depth, room),
+                )
             }
         }
     }
