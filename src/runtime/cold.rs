@@ -1,6 +1,5 @@
 //! Who is cold: which agents run ahead in herds, and where they were at a time.
 
-use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use crate::codegen::program::{Flow, Program, Slot};
@@ -8,7 +7,6 @@ use crate::math::Interval;
 use crate::runtime::crew::Crew;
 use crate::runtime::herd::Herd;
 use crate::runtime::leap::{Covering, Leaps, STATES_MAX};
-use crate::runtime::route::first;
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::segment::{N_MAX, Segment};
 use crate::runtime::solve::series_step;
@@ -48,11 +46,6 @@ impl<'p> Cold<'p> {
     /// Herds for `n_agents`, all of which are not cold.
     pub fn new(program: &'p Program, n_agents: usize, accuracy: Accuracy, stop: f64) -> Self {
         let mut herds = Vec::new();
-        let mut begin_there: FxHashMap<(usize, usize), usize> = FxHashMap::default();
-        for agent in &program.population.agents {
-            let (ty, mode) = (agent.ty.index(), agent.mode.index());
-            *begin_there.entry((ty, first(&program.types[ty], mode))).or_default() += 1;
-        }
         let order = series_step::order(accuracy.tolerance, N_MAX - 1);
         let mut herd_of = |ty: usize, mode: usize| {
             let flow = program.types[ty].modes[mode].flow.as_ref()?;
@@ -61,7 +54,7 @@ impl<'p> Cold<'p> {
                 return None;
             }
             let leaps = Leaps { tape, order, accuracy, stop };
-            herds.push(Herd::new(leaps, begin_there.get(&(ty, mode)).copied().unwrap_or(0)));
+            herds.push(Herd::new(leaps));
             Some(herds.len() as u32 - 1)
         };
         let modes = |ty: usize| 0..program.types[ty].modes.len();

@@ -40,8 +40,8 @@ pub struct Herd<'p> {
 }
 
 impl<'p> Herd<'p> {
-    /// No agents yet, and memory for so many.
-    pub fn new(leaps: Leaps<'p>, n_agents: usize) -> Self {
+    /// No agents yet.
+    pub fn new(leaps: Leaps<'p>) -> Self {
         let n = leaps.tape.n_states;
         let alone = RefCell::new((LeapRows::new(&leaps), Segment::default()));
         let tracks = Tracks::new(n, leaps.order + 1);
@@ -50,11 +50,11 @@ impl<'p> Herd<'p> {
             leaps,
             n,
             width,
-            agents: Vec::with_capacity(n_agents),
-            clocks: Vec::with_capacity(n_agents),
-            rows: Vec::with_capacity(n_agents * width),
-            bounds: Vec::with_capacity(n_agents * 2 * n),
-            looks: Vec::with_capacity(n_agents),
+            agents: Vec::new(),
+            clocks: Vec::new(),
+            rows: Vec::new(),
+            bounds: Vec::new(),
+            looks: Vec::new(),
             tracks,
             alone,
         }

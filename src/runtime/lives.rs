@@ -169,14 +169,15 @@ impl Engine<'_, '_> {
         let program = self.program;
         for (ty, system) in program.types.iter().enumerate() {
             for set in &system.sets {
-                let is_reader = self.agents.agents[newborn].ty == ty;
-                if is_reader {
+                if self.agents.agents[newborn].ty == ty {
                     for member in self.agents.of_type[set.ty].clone() {
-                        self.join([newborn, member], set, span, written)?;
+                        if self.belongs(member, set) {
+                            self.join([newborn, member], set, span, written)?;
+                        }
                     }
                 }
-                for owner in self.agents.of_type[ty].clone() {
-                    if owner != newborn {
+                if self.belongs(newborn, set) {
+                    for owner in self.agents.of_type[ty].clone() {
                         self.join([owner, newborn], set, span, written)?;
                     }
                 }
@@ -185,7 +186,14 @@ impl Engine<'_, '_> {
         Ok(())
     }
 
-    /// Leads the first free link of a set of an agent to another one, if that is a member.
+    /// Whether an agent is of a set.
+    fn belongs(&self, agent: usize, set: &SetSystem) -> bool {
+        let Agent { ty, aux, .. } = &self.agents.agents[agent];
+        let is_named = |param| aux[self.program.types[*ty].layout.param(param)] == 1.0;
+        *ty == set.ty && set.belongs.is_none_or(is_named)
+    }
+
+    /// Leads the first free link of a set of an agent to a member, if none leads there.
     fn join(
         &mut self,
         [owner, member]: [usize; 2],
@@ -193,11 +201,6 @@ impl Engine<'_, '_> {
         span: Span,
         written: &mut Written,
     ) -> Result<(), Failure> {
-        let Agent { ty, aux, .. } = &self.agents.agents[member];
-        let is_named = |param| aux[self.program.types[*ty].layout.param(param)] == 1.0;
-        if *ty != set.ty || !set.belongs.is_none_or(is_named) {
-            return Ok(());
-        }
         let linked = |link: &usize| self.agents.linked(owner, *link);
         if set.links.clone().any(|link| linked(&link) == member) {
             return Ok(());
