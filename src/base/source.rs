@@ -40,7 +40,7 @@ impl Span {
 pub struct SourceFile {
     /// The path as the user wrote it.
     pub name: String,
-    /// The whole text.
+    /// The whole text; empty once it has been forgotten.
     pub text: String,
     /// Where each line begins.
     line_starts: Vec<u32>,
@@ -79,6 +79,12 @@ impl SourceMap {
         let id = FileId(u32::try_from(self.files.len()).expect("fewer than 2^32 files"));
         self.files.push(SourceFile::new(name.into(), text.into()));
         id
+    }
+
+    /// Forgets the text of a file to which nothing refers any more; its name stays.
+    pub fn forget(&mut self, id: FileId) {
+        let file = &mut self.files[id.0 as usize];
+        *file = SourceFile::new(std::mem::take(&mut file.name), String::new());
     }
 
     /// A file by its number.

@@ -99,7 +99,7 @@ fn unknown(column: &Column) -> Interval {
 /// By type: the hulls of numbers of its agents; nothing if there are none.
 fn hulls(system: &System, numbers: impl Fn(&Instance) -> &[f64]) -> Vec<Vec<Interval>> {
     let mut hulls: Vec<Vec<Interval>> = vec![Vec::new(); system.types.len()];
-    for agent in &system.population.agents {
+    for agent in system.population.agents.iter() {
         let known = &mut hulls[agent.ty.index()];
         let numbers = numbers(agent).iter().map(|&number| Interval::point(number));
         if known.is_empty() {

@@ -353,6 +353,14 @@ impl<'a> Context<'a> {
         self.diagnostics.dedup();
         let model = if self.has_errors() { None } else { Some(self.model) };
         let (diagnostics, warnings) = (first_of(self.diagnostics), first_of(warnings));
+        if model.is_some() {
+            let labels = || diagnostics.iter().chain(&warnings).flat_map(|diagnostic| &diagnostic.labels);
+            for &data in self.opened.values() {
+                if labels().all(|label| label.span.file != data) {
+                    self.sources.forget(data);
+                }
+            }
+        }
         super::Checked { model, diagnostics, warnings }
     }
 

@@ -3,6 +3,8 @@
 //! Flat data. Expressions lie in one arena, operands before their users. What follows a `param` or a top-level `let`
 //! without agents in it is already a number. Values are SI. Modes form a tree whose root (number 0) is the agent itself.
 
+use std::sync::Arc;
+
 use crate::base::{Arena, FileId, Idx, Span};
 use crate::math::draw::Distribution;
 use crate::math::{Op, Scale};
@@ -503,8 +505,8 @@ pub struct Interaction {
 pub struct Population {
     /// The names of `system { }`.
     pub blocks: Vec<Block>,
-    /// All agents in order.
-    pub agents: Vec<Instance>,
+    /// All agents in order. There may be very many: every floor has the same ones.
+    pub agents: Arc<Vec<Instance>>,
     /// Discrete variables that every agent of their type starts with a value that the text declares as a constant.
     pub fixed: Vec<(TypeId, usize)>,
 }

@@ -1,5 +1,7 @@
 //! Makes the agents that have been planned.
 
+use std::sync::Arc;
+
 use super::context::Context;
 use super::error::{LimitError, SystemError, ValueError};
 use super::evaluate::Known;
@@ -35,7 +37,7 @@ impl<'a> Context<'a> {
             }
         }
         self.model.population.blocks = blocks;
-        self.model.population.agents = agents;
+        self.model.population.agents = Arc::new(agents);
     }
 
     fn instance(

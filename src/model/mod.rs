@@ -121,7 +121,7 @@ pub struct Checked {
 }
 
 /// The model that a text and the files that it imports describe, with the settings of this run. Files that are named are added to
-/// `sources`.
+/// `sources`; the texts of data files are forgotten again where there is nothing to say about them.
 pub fn check(ast: &Ast, sources: &mut SourceMap, files: &mut dyn Files, settings: &Settings) -> Checked {
     let imports::Imports { trees, diagnostics } = imports::gather(ast, sources, files);
     let written = || trees.iter().chain([ast]).flat_map(|tree| &tree.items);

@@ -4,6 +4,8 @@
 //! it. Nothing in the text names these links, and nothing but births and deaths changes them; by them the flow is a formula over agents
 //! like any other, with its derivatives, its kinks and its couplings.
 
+use std::sync::Arc;
+
 use rustc_hash::FxHashSet;
 
 use super::context::Context;
@@ -92,7 +94,7 @@ fn link_all(context: &mut Context, ty: TypeId, set: Named, room: usize, span: Sp
     let owner = &mut model.types[ty];
     owner.sets.push(Set { ty: of, block, first: owner.links.len(), count, room });
     owner.links.extend(links);
-    for agent in model.population.agents.iter_mut().filter(|agent| agent.ty == ty) {
+    for agent in Arc::make_mut(&mut model.population.agents).iter_mut().filter(|agent| agent.ty == ty) {
         agent.links.extend(members.iter().map(|&member| Some(member)));
         agent.links.extend(std::iter::repeat_n(None, room));
     }

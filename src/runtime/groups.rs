@@ -77,8 +77,10 @@ impl Groups {
         clock: f64,
         h: &dyn Fn(usize) -> Option<f64>,
     ) -> Vec<usize> {
-        let mut made = Vec::new();
-        for component in self.components(agents, members) {
+        let components = self.components(agents, members);
+        let mut made = Vec::with_capacity(components.len());
+        self.groups.reserve(components.len().saturating_sub(self.free.len()));
+        for component in components {
             let number = self.free.pop().unwrap_or_else(|| {
                 self.groups.push(Group::default());
                 self.groups.len() - 1
@@ -161,7 +163,10 @@ fn mutual(agents: &Agents<'_>, members: &[usize]) -> Vec<Vec<usize>> {
     let mut found: FxHashMap<usize, (usize, usize)> = FxHashMap::default();
     let mut complete: FxHashSet<usize> = FxHashSet::default();
     let (mut open, mut components): (Vec<usize>, Vec<Vec<usize>>) = (Vec::new(), Vec::new());
-    for &member in members {
+    // Who reads nobody is a component by itself.
+    let (coupled, apart): (Vec<usize>, Vec<usize>) =
+        members.iter().partition(|&&agent| !agents.couples(agent).is_empty());
+    for &member in &coupled {
         let mut visits = Vec::new();
         let mut discovered = (!found.contains_key(&member)).then_some(member);
         loop {
@@ -195,9 +200,11 @@ fn mutual(agents: &Agents<'_>, members: &[usize]) -> Vec<Vec<usize>> {
             }
         }
     }
-    let wanted: FxHashSet<usize> = members.iter().copied().collect();
+    let wanted: FxHashSet<usize> = coupled.into_iter().collect();
     components.retain(|component| component.iter().any(|agent| wanted.contains(agent)));
+    components.extend(apart.into_iter().map(|agent| vec![agent]));
     components.sort_unstable();
+    components.dedup();
     components
 }
 

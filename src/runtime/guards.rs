@@ -206,8 +206,13 @@ impl<'p> Guards<'p> {
             let n = definition.n_instances(agents);
             (instances + n as usize, atoms + n as usize * definition.n_atoms)
         });
-        guards.instances.reserve_exact(n_instances);
-        guards.atoms.reserve_exact(n_atoms);
+        // Room for the pairs that will be near: one for each agent, to begin with.
+        let near = definitions.iter().filter(|definition| !definition.near.is_empty());
+        let (n_near, n_near_atoms) = near.fold((0, 0), |(instances, atoms), definition| {
+            (instances + agents.len(), atoms + agents.len() * definition.n_atoms)
+        });
+        guards.instances.reserve_exact(n_instances + n_near);
+        guards.atoms.reserve_exact(n_atoms + n_near_atoms);
         for (number, definition) in definitions.iter().enumerate() {
             if definition.near.is_empty() {
                 for_each_binding(agents, definition, &mut |roots| {

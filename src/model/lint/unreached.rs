@@ -30,7 +30,7 @@ pub(super) fn modes(context: &Context, found: &mut Vec<Warning>) {
 /// By type: the modes in which agents begin, and those into which interactions put them.
 fn starts(model: &Model) -> Vec<Vec<ModeId>> {
     let mut starts = vec![vec![ModeId::new(0)]; model.types.len()];
-    for agent in &model.population.agents {
+    for agent in model.population.agents.iter() {
         let known = &mut starts[agent.ty.index()];
         if !known.contains(&agent.mode) {
             known.push(agent.mode);
