@@ -86,7 +86,11 @@ impl Engine<'_, '_> {
         self.present.go(time);
         let mut concerned: Vec<u32> = Vec::new();
         let mut refold: Vec<u32> = Vec::new();
+        let mut at_once: Vec<usize> = Vec::new();
         for (index, root) in changed {
+            if self.guards.atoms[index].certified >= root {
+                at_once.push(index);
+            }
             self.flip(index, root);
             let instance = self.guards.atoms[index].instance;
             concerned.push(instance);
@@ -97,7 +101,7 @@ impl Engine<'_, '_> {
         for instance in refold {
             self.settle_folds(instance);
         }
-        self.happen(concerned, now)
+        self.happen(concerned, now, &at_once)
     }
 
     /// Executes the instant at `time`, at which a step has ended, by what is scheduled then and by atoms that have been
@@ -115,12 +119,12 @@ impl Engine<'_, '_> {
             state.near = time;
             concerned.push(state.instance);
         }
-        self.happen(concerned, now)
+        self.happen(concerned, now, &[])
     }
 
     /// Executes the instant at the present time, if something fires by the instances whose atoms have changed or by what
-    /// is scheduled.
-    fn happen(&mut self, mut concerned: Vec<u32>, now: Vec<Due>) -> Result<(), Failure> {
+    /// is scheduled. Those `at_once` changed where they had been settled last.
+    fn happen(&mut self, mut concerned: Vec<u32>, now: Vec<Due>, at_once: &[usize]) -> Result<(), Failure> {
         let mut candidates = Vec::new();
         // Links that the flow changed are updated first (rule 4).
         self.repetitions.instant += 1;
@@ -147,7 +151,7 @@ impl Engine<'_, '_> {
             self.instant(candidates)?;
         }
         if claims {
-            self.judge_claims(&concerned)?;
+            self.judge_claims(&concerned, at_once)?;
         }
         if gates {
             self.set_gates(&concerned)?;

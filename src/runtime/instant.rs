@@ -109,7 +109,7 @@ impl Engine<'_, '_> {
         }
         concerned.sort_unstable();
         concerned.dedup();
-        self.judge_claims(&concerned)?;
+        self.judge_claims(&concerned, &[])?;
         self.set_gates(&concerned)?;
         self.calm(&concerned);
         self.end_lives();
@@ -365,15 +365,16 @@ impl Engine<'_, '_> {
         }
     }
 
-    /// Rule 8: invariants that are false now end the run, asserts are noted.
-    pub fn judge_claims(&mut self, concerned: &[u32]) -> Result<(), Failure> {
+    /// Rule 8: invariants that are false now end the run, asserts are noted. What changed `at_once`, where it had been settled,
+    /// is not settled again: the search has looked further than its rates, and would change it back.
+    pub fn judge_claims(&mut self, concerned: &[u32], at_once: &[usize]) -> Result<(), Failure> {
         for &instance in concerned {
             let Origin::Claim(claim) = self.guards.definition(instance).origin else { continue };
             // Properties are judged by their margins, along the way.
             if claim.kind == ClaimKind::Property || !self.guards.instances[instance as usize].active {
                 continue;
             }
-            for index in self.guards.atoms_of(instance) {
+            for index in self.guards.atoms_of(instance).filter(|index| !at_once.contains(index)) {
                 self.settle(index, Rule::Rates, &Written::default());
             }
             let state = &self.guards.instances[instance as usize];

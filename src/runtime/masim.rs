@@ -115,7 +115,7 @@ impl Engine<'_, '_> {
         let claims: Vec<u32> = instances
             .filter(|&instance| matches!(self.guards.definition(instance).origin, Origin::Claim(_)))
             .collect();
-        self.judge_claims(&claims)?;
+        self.judge_claims(&claims, &[])?;
         let all: Vec<u32> = (0..self.guards.instances.len() as u32).collect();
         self.set_gates(&all)
     }

@@ -78,7 +78,8 @@ fn scope(ty: &AgentSystem, source: usize, target: usize, region: usize) -> usize
         return region;
     }
     let outside = ty.modes[source].parent.unwrap_or(region);
-    ty.around(target).skip(1).find(|&around| ty.is_inside(outside, around)).unwrap_or(region)
+    let mut around = ty.around(target).skip(1).take_while(|&around| ty.is_inside(around, region));
+    around.find(|&around| ty.is_inside(outside, around)).unwrap_or(region)
 }
 
 /// The modes around a target, the target, and what is entered inside it.

@@ -21,7 +21,7 @@ fn with_agents(n_agents: usize) -> System {
         discretes: Vec::new(),
         links: Vec::new(),
     };
-    system.population.agents = vec![instance; n_agents];
+    system.population.agents = vec![instance; n_agents].into();
     system
 }
 

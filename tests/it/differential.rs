@@ -1,24 +1,26 @@
 //! Does the engine do what the language says? Random models, run by it and by a slow and obvious reference simulator.
 //!
-//! A model counts if the reference's own log is the same under half its step. `cargo test` runs 200 models by each method;
+//! A model counts if the reference's own log is the same under half its step. `cargo test` runs 200 models of each kind;
 //! `HYC_MODELS=10000 cargo test differential -- --nocapture` runs so many, from number `HYC_FIRST` (0) on; with
 //! `HYC_MODELS=1 HYC_FIRST=n HYC_PRINT=1` that is model n alone, printed first, and with `HYC_FILE=path` the model of that file.
 
 pub mod dice;
 mod evaluate;
+mod modes;
 mod world;
 mod boundary;
 mod point;
 mod post;
 mod reference;
 pub mod generate;
+mod tree;
 mod compare;
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use compare::{Verdict, compare};
-use dice::{WITH_AGGREGATES, WITH_EVENTS};
+use dice::{WITH_AGGREGATES, WITH_EVENTS, WITH_LIVES};
 use hyc::model::ir::Integrator;
 
 /// A number from the environment.
@@ -85,6 +87,11 @@ fn so_they_do_of_models_with_aggregates() {
 #[test]
 fn so_they_do_of_models_with_events() {
     tell_the_same_story(Integrator::Auto, WITH_EVENTS + setting("HYC_FIRST").unwrap_or(0));
+}
+
+#[test]
+fn so_they_do_of_models_with_hierarchy_births_and_deaths() {
+    tell_the_same_story(Integrator::Auto, WITH_LIVES + setting("HYC_FIRST").unwrap_or(0));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! A model by the engine and by the reference, and where their histories differ.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::io;
 use std::sync::atomic::AtomicBool;
@@ -12,6 +13,7 @@ use hyc::runtime::limits::Limits;
 use hyc::runtime::observe::{Cell, End, Event, Last, Observer};
 
 use super::generate;
+use super::modes;
 use super::reference::{self, Pace, Row};
 
 /// The reference's step, s; a model counts only if half of it makes no difference.
@@ -37,15 +39,18 @@ pub enum Verdict {
     Different(String),
 }
 
-/// A history to compare: the log, and mode and values of every agent at the end.
+/// A history to compare: the log, and number, mode and values of every agent at the end.
 struct Story {
     rows: Vec<Row>,
-    ends: Vec<(String, Vec<f64>)>,
+    ends: Vec<Ending>,
     /// Up to when it counts, s.
     until: f64,
     /// How and when it failed.
     error: Option<(f64, String)>,
 }
+
+/// Number, mode and values of an agent.
+type Ending = (usize, String, Vec<f64>);
 
 /// A difference: when it shows, s; infinite if in the states at the end only. In words.
 type Difference = (f64, String);
@@ -58,13 +63,14 @@ pub fn compare(text: &str, integrator: Integrator) -> Verdict {
     };
     let refer = |pace: Pace| {
         let reference::History { rows, until, world } = reference::run(&model, pace, generate::is_ordered);
-        let end = |agent: &super::world::Agent| {
+        let end = |(number, agent): (usize, &super::world::Agent)| {
             let ty = &model.types[agent.ty];
             let mut values = world.states[agent.first..agent.first + ty.states.len()].to_vec();
             values.extend(&agent.discretes);
-            (ty.modes[agent.mode].path.clone(), values)
+            (number, modes::name(ty, &agent.active), values)
         };
-        Story { rows, ends: world.agents.iter().map(end).collect(), until, error: None }
+        let living = world.agents.iter().enumerate().filter(|(_, agent)| agent.lives);
+        Story { rows, ends: living.map(end).collect(), until, error: None }
     };
     let end = model.run.until.expect("the generator writes an end");
     let usual = Pace { step: STEP, nudge: 0.0, wary: false };
@@ -130,7 +136,9 @@ fn difference(ours: &Story, theirs: &Story, tolerance: f64, until: f64) -> Optio
             first = Some((time, text));
         }
     };
-    for agent in 0..theirs.ends.len() {
+    let all = ours.rows.iter().chain(&theirs.rows);
+    let agents: BTreeSet<usize> = all.flat_map(|row| [row.agent].into_iter().chain(row.other)).collect();
+    for agent in agents {
         let own = |story: &Story| -> Vec<Row> {
             let concerns = |row: &&Row| row.time < until && (row.agent == agent || row.other == Some(agent));
             story.rows.iter().filter(concerns).cloned().collect()
@@ -151,10 +159,14 @@ fn difference(ours: &Story, theirs: &Story, tolerance: f64, until: f64) -> Optio
         }
     }
     let to_the_end = ours.until <= until && theirs.until <= until;
-    for (agent, (a, b)) in ours.ends.iter().zip(&theirs.ends).enumerate().filter(|_| to_the_end) {
+    let numbers = |story: &Story| story.ends.iter().map(|(number, ..)| *number).collect::<Vec<_>>();
+    if to_the_end && numbers(ours) != numbers(theirs) {
+        found(f64::INFINITY, format!("who lives at the end: {:?} | {:?}", numbers(ours), numbers(theirs)));
+    }
+    for (a, b) in ours.ends.iter().zip(&theirs.ends).filter(|_| to_the_end) {
         let near = |(a, b): (&f64, &f64)| (a - b).abs() <= STATE * (1.0 + b.abs());
-        if a.0 != b.0 || !a.1.iter().zip(&b.1).all(near) {
-            found(f64::INFINITY, format!("agent {agent} at the end: {a:?} | {b:?}"));
+        if a.1 != b.1 || !a.2.iter().zip(&b.2).all(near) {
+            found(f64::INFINITY, format!("an agent at the end: {a:?} | {b:?}"));
         }
     }
     first
@@ -210,7 +222,7 @@ impl Files for NoFiles {
 /// Writes down what the engine tells.
 struct Writer {
     rows: Vec<Row>,
-    ends: Vec<(String, Vec<f64>)>,
+    ends: Vec<Ending>,
 }
 
 impl Observer for Writer {
@@ -232,7 +244,7 @@ impl Observer for Writer {
             Cell::Empty | Cell::Agent(_) => f64::NAN,
         };
         let values = last.states.iter().copied().chain(last.discretes.iter().map(number)).collect();
-        self.ends.push((last.mode.into(), values));
+        self.ends.push((last.agent.number, last.mode.into(), values));
         Ok(())
     }
 }

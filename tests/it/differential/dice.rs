@@ -6,6 +6,9 @@ pub const WITH_AGGREGATES: u64 = 1_000_000;
 /// Models from this number on have events, and no aggregates.
 pub const WITH_EVENTS: u64 = 2_000_000;
 
+/// Models from this number on have modes in modes, regions, and agents that are created and destroyed; no aggregates and no events.
+pub const WITH_LIVES: u64 = 3_000_000;
+
 /// The state of the generator.
 pub struct Dice {
     state: u64,
@@ -13,6 +16,8 @@ pub struct Dice {
     pub aggregates: bool,
     /// Whether events may be written.
     pub events: bool,
+    /// Whether modes may hold modes, and agents come and go.
+    pub lives: bool,
 }
 
 impl Dice {
@@ -22,7 +27,8 @@ impl Dice {
         Self {
             state,
             aggregates: (WITH_AGGREGATES..WITH_EVENTS).contains(&seed),
-            events: seed >= WITH_EVENTS,
+            events: (WITH_EVENTS..WITH_LIVES).contains(&seed),
+            lives: seed >= WITH_LIVES,
         }
     }
 

@@ -70,7 +70,8 @@ impl<'a> Scope<'a> {
         self.number(expr) != 0.0
     }
 
-    fn agent(&mut self, expr: ExprId) -> Option<usize> {
+    /// An agent, or none.
+    pub fn agent(&mut self, expr: ExprId) -> Option<usize> {
         match self.value(expr) {
             Value::Agent(agent) => agent,
             Value::Number(_) => panic!("a number is no agent"),
@@ -130,7 +131,7 @@ impl<'a> Scope<'a> {
             ExprKind::Same(a, b) => f64::from(self.agent(*a) == self.agent(*b)),
             ExprKind::Is(of, mode) => {
                 let of = self.named(*of);
-                f64::from(self.world.agents[of].mode == *mode)
+                f64::from(self.world.agents[of].active.contains(mode))
             }
             ExprKind::Quantifier { kind, binder, set, other, filter, body } => {
                 let witness =
@@ -211,7 +212,7 @@ impl<'a> Scope<'a> {
     fn members(&self, set: TypeId, other: bool) -> Vec<usize> {
         let out =
             |agent: &usize| other && (*agent == self.agents[0] || self.pair && *agent == self.agents[1]);
-        let of_type = |agent: &usize| self.world.agents[*agent].ty == set;
+        let of_type = |agent: &usize| self.world.agents[*agent].ty == set && self.world.agents[*agent].lives;
         (0..self.world.agents.len()).filter(of_type).filter(|agent| !out(agent)).collect()
     }
 

@@ -6,12 +6,20 @@
 use std::fmt::Write as _;
 
 use super::dice::Dice;
+use super::tree::{Inside, Node, lives, targets, tree};
 
 /// What is known of an agent type before its text is written.
-struct Shape {
-    name: &'static str,
-    states: Vec<&'static str>,
-    modes: Vec<String>,
+pub struct Shape {
+    /// Its name.
+    pub name: &'static str,
+    /// Its states.
+    pub states: Vec<&'static str>,
+    /// What `is` and transitions may name.
+    pub modes: Vec<String>,
+    /// Its modes with those inside them, if any are.
+    nodes: Vec<Node>,
+    /// It may be destroyed; nobody has it as a parameter.
+    pub mortal: bool,
     /// It has a discrete `k` of 0, 1, 2.
     counts: bool,
     /// It has a discrete `lit`.
@@ -19,19 +27,21 @@ struct Shape {
     /// It has a discrete `c`, a real.
     keeps: bool,
     /// It has a parameter `p`.
-    tuned: bool,
+    pub tuned: bool,
     /// The type of the agent that its link `mate` leads to.
-    mate: Option<usize>,
+    pub mate: Option<usize>,
     /// It has an event `ping` that carries a real.
     pings: bool,
-    agents: usize,
+    /// How many there are at the start.
+    pub agents: usize,
 }
 
 /// What an expression may name, and how.
-struct View<'a> {
+pub struct View<'a> {
     /// Before a name: empty, `o.`, `mate.`, `a.`.
-    prefix: &'a str,
-    shape: &'a Shape,
+    pub prefix: &'a str,
+    /// Whose.
+    pub shape: &'a Shape,
 }
 
 /// The model of this number.
@@ -61,17 +71,22 @@ fn shapes(dice: &mut Dice) -> Vec<Shape> {
     for _ in 0..dice.below(7 - n) {
         agents[dice.below(n)] += 1;
     }
+    let mortal: Vec<bool> = (0..n).map(|_| dice.lives && dice.percent(60)).collect();
     let shape = |k: usize, agents: usize, dice: &mut Dice| {
         let modes = [0, 2, 2, 3, 1][dice.below(5)];
+        let nodes = if dice.lives && modes != 0 { tree(dice) } else { Vec::new() };
+        let flat = (0..modes).map(|mode| format!("M{mode}")).collect();
         Shape {
             name: ["Ant", "Bee", "Cat"][k],
             states: ["x", "y", "z"][..1 + dice.below(3)].to_vec(),
-            modes: (0..modes).map(|mode| format!("M{mode}")).collect(),
+            modes: if nodes.is_empty() { flat } else { targets(&nodes, "").0 },
+            nodes,
+            mortal: mortal[k],
             counts: dice.percent(50),
             switches: dice.percent(40),
             keeps: dice.percent(30),
             tuned: dice.percent(40),
-            mate: dice.percent(35).then(|| dice.below(n)),
+            mate: dice.percent(35).then(|| dice.below(n)).filter(|mate| !mortal[*mate]),
             pings: dice.events && (k == 0 || dice.percent(60)),
             agents,
         }
@@ -118,6 +133,17 @@ fn agent(dice: &mut Dice, shapes: &[Shape], shape: &Shape, text: &mut String) {
     for k in 0..outer_transitions {
         transition(dice, shapes, shape, &format!("t{k}"), None, "  ", text);
     }
+    if dice.lives {
+        lives(dice, shapes, shape, text);
+    }
+    if !shape.nodes.is_empty() {
+        let (mut targets, histories) = targets(&shape.nodes, "");
+        targets.extend(histories);
+        let inside = Inside { shapes, shape, targets, around: String::new(), states: inner };
+        inside.write(dice, &shape.nodes, 1, text);
+        text.push_str("}\n");
+        return;
+    }
     for (mode, name) in shape.modes.iter().enumerate() {
         let _ = writeln!(text, "  {}mode {name} {{", if mode == 0 { "initial " } else { "" });
         flow(dice, shapes, shape, &inner, "    ", text);
@@ -131,14 +157,14 @@ fn agent(dice: &mut Dice, shapes: &[Shape], shape: &Shape, text: &mut String) {
             }
         }
         for k in 0..1 + dice.below(2) {
-            transition(dice, shapes, shape, &format!("m{mode}{k}"), Some(mode), "    ", text);
+            transition(dice, shapes, shape, &format!("m{mode}{k}"), Some(&shape.modes), "    ", text);
         }
         text.push_str("  }\n");
     }
     text.push_str("}\n");
 }
 
-fn flow(dice: &mut Dice, shapes: &[Shape], shape: &Shape, states: &[&str], indent: &str, text: &mut String) {
+pub fn flow(dice: &mut Dice, shapes: &[Shape], shape: &Shape, states: &[&str], indent: &str, text: &mut String) {
     if states.is_empty() {
         return;
     }
@@ -188,7 +214,7 @@ fn rate(dice: &mut Dice, shapes: &[Shape], shape: &Shape, state: &str) -> String
 }
 
 /// A real number that a view offers.
-fn real(dice: &mut Dice, view: &View<'_>) -> String {
+pub fn real(dice: &mut Dice, view: &View<'_>) -> String {
     let mut names: Vec<&str> = view.shape.states.clone();
     if view.shape.keeps {
         names.push("c");
@@ -196,12 +222,12 @@ fn real(dice: &mut Dice, view: &View<'_>) -> String {
     format!("{}{}", view.prefix, dice.pick(&names))
 }
 
-fn transition(
+pub fn transition(
     dice: &mut Dice,
     shapes: &[Shape],
     shape: &Shape,
     label: &str,
-    mode: Option<usize>,
+    targets: Option<&[String]>,
     indent: &str,
     text: &mut String,
 ) {
@@ -237,14 +263,18 @@ fn transition(
     if dice.percent(20) {
         let _ = write!(text, " priority {}", [1, 2, 3][dice.below(3)]);
     }
-    let moves = !shape.modes.is_empty() && dice.percent(if mode.is_some() { 75 } else { 40 });
+    let moves = !shape.modes.is_empty() && dice.percent(if targets.is_some() { 75 } else { 40 });
     if moves {
-        let _ = write!(text, " -> {}", dice.pick(&shape.modes));
+        let _ = write!(text, " -> {}", dice.pick(targets.unwrap_or(&shape.modes)));
     }
     if let Some(set) = witness {
         views.push(View { prefix: "o.", shape: set });
     }
-    if hears && dice.percent(70) {
+    if let Some(set) = witness.filter(|set| set.mortal && dice.percent(25)) {
+        let _ = write!(text, " {{ destroy o{} }}", if set.agents > 1 { "" } else { "  x := 0.5*x" });
+    } else if shape.mortal && !moves && dice.percent(10) {
+        text.push_str(" { destroy self }");
+    } else if hears && dice.percent(70) {
         let (state, c) = (dice.pick(&shape.states), dice.number(-0.5, 0.5));
         let _ = write!(text, " {{ {state} := 0.6*w + {c}{} }}", emission(dice, shape, "", &views));
     } else if !moves || dice.percent(60) {
@@ -366,7 +396,7 @@ fn condition(dice: &mut Dice, views: &[View<'_>], depth: usize) -> String {
     }
 }
 
-fn comparison(dice: &mut Dice, views: &[View<'_>]) -> String {
+pub fn comparison(dice: &mut Dice, views: &[View<'_>]) -> String {
     let view = dice.pick(views);
     let prefix = view.prefix;
     let sign = *dice.pick(&["<=", ">=", "<", ">"]);
@@ -402,7 +432,7 @@ fn dice_view<'a, 'b>(views: &'a [View<'b>]) -> &'a View<'b> {
 }
 
 /// Assignments to so many different variables of an agent, reading what the views offer.
-fn writes(dice: &mut Dice, shape: &Shape, target: &str, views: &[View<'_>], n: usize) -> String {
+pub fn writes(dice: &mut Dice, shape: &Shape, target: &str, views: &[View<'_>], n: usize) -> String {
     let mut names: Vec<&str> = shape.states.clone();
     if shape.counts {
         names.push("k");
@@ -522,6 +552,9 @@ fn lopsided(dice: &mut Dice, a: &Shape, b: &Shape) -> String {
     }
     if which != 1 {
         list.push(writes(dice, b, "b.", &views, 1));
+    }
+    if which == 0 && b.mortal && dice.percent(40) {
+        return format!("{}  destroy b", list.join("  "));
     }
     if b.modes.len() > 1 && dice.percent(30) {
         list.push(format!("b -> {}", dice.pick(&b.modes)));

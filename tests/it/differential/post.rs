@@ -47,11 +47,6 @@ pub struct Post {
 }
 
 impl Post {
-    /// Nothing is under way.
-    pub fn new(agents: usize) -> Self {
-        Self { inboxes: vec![Inbox::default(); agents], ..Self::default() }
-    }
-
     /// When the next message comes, s.
     pub fn next_time(&self) -> Option<f64> {
         self.later.iter().map(|(time, _)| *time).min_by(f64::total_cmp)

@@ -6,11 +6,13 @@
 use hyc::math::Op;
 use hyc::math::draw::{Distribution, Key};
 use hyc::model::ir::{
-    Action, ExprId, ExprKind, InteractionId, ModeId, Model, Transition, Trigger, TypeId, VarRef,
+    Action, Create, ExprId, ExprKind, Given, Instance as Start, InteractionId, ModeId, Model, Transition,
+    Trigger, TypeId, VarRef,
 };
 
 use super::boundary::Boundary;
 use super::evaluate::Scope;
+use super::modes::{self, Change, after};
 use super::point;
 use super::post::{Message, Post};
 use super::world::World;
@@ -79,17 +81,18 @@ pub struct Reference<'a> {
     instances: Vec<Instance>,
     rows: Vec<Row>,
     post: Post,
+    /// Whether the pairs of each interaction are ordered.
+    ordered: Vec<bool>,
     /// When a branch in a flow went another way, s.
     branchings: Vec<f64>,
     end: f64,
 }
 
-/// A transition that is taken, and what it writes.
+/// A transition that is taken, and what it does.
 struct Taken {
     instance: usize,
-    moves: Vec<(usize, ModeId)>,
-    writes: Vec<(usize, VarRef, f64)>,
-    sent: Vec<(Message, f64)>,
+    moves: Vec<Change>,
+    done: Done,
 }
 
 /// What a list of actions does.
@@ -101,6 +104,10 @@ struct Done {
     all: Vec<(usize, VarRef)>,
     /// The messages that it sends, each with its delay, s.
     sent: Vec<(Message, f64)>,
+    /// The agents that it creates.
+    created: Vec<Start>,
+    /// The agents that it destroys.
+    destroyed: Vec<usize>,
 }
 
 /// How a model is run.
@@ -132,8 +139,26 @@ pub fn run(model: &Model, pace: Pace, ordered: impl Fn(&str) -> bool) -> History
 
 impl<'a> Reference<'a> {
     fn new(model: &'a Model, nudge: f64, ordered: impl Fn(&str) -> bool) -> Self {
-        let world = World::new(model, nudge);
-        let mut instances = Vec::new();
+        let ordered = model.interactions.iter().map(|interaction| ordered(&interaction.name)).collect();
+        let end = model.run.until.expect("the generator writes an end");
+        let mut reference = Self {
+            model,
+            world: World::new(model, nudge),
+            instances: Vec::new(),
+            rows: Vec::new(),
+            post: Post::default(),
+            ordered,
+            branchings: Vec::new(),
+            end,
+        };
+        for agent in 0..reference.world.agents.len() {
+            reference.admit(agent);
+        }
+        reference
+    }
+
+    /// Adds the transitions of an agent, and of the pairs that it is in with agents before it.
+    fn admit(&mut self, agent: usize) {
         let instance = |owner, transition, agents| Instance {
             owner,
             transition,
@@ -145,26 +170,23 @@ impl<'a> Reference<'a> {
             entries: 0,
             draws: 0,
         };
-        let n = world.agents.len();
-        for (id, interaction) in model.interactions.iter_enumerated() {
+        let types = |agents: [usize; 2]| agents.map(|agent| self.world.agents[agent].ty);
+        for (id, interaction) in self.model.interactions.iter_enumerated() {
             for transition in 0..interaction.transitions.len() {
-                for (a, b) in (0..n).flat_map(|a| (0..n).map(move |b| (a, b))) {
-                    let types = [world.agents[a].ty, world.agents[b].ty];
-                    if a != b && types == interaction.types && (a < b || ordered(&interaction.name)) {
-                        instances.push(instance(Owner::Interaction(id), transition, [a, b]));
+                for other in (0..agent).filter(|other| self.world.agents[*other].lives) {
+                    let mut pairs = vec![[other, agent]];
+                    pairs.extend(self.ordered[id.index()].then_some([agent, other]));
+                    for pair in pairs.into_iter().filter(|pair| types(*pair) == interaction.types) {
+                        self.instances.push(instance(Owner::Interaction(id), transition, pair));
                     }
                 }
             }
         }
-        for k in 0..n {
-            let ty = world.agents[k].ty;
-            for transition in 0..model.types[ty].transitions.len() {
-                instances.push(instance(Owner::Type(ty), transition, [k, k]));
-            }
+        let ty = self.world.agents[agent].ty;
+        for transition in 0..self.model.types[ty].transitions.len() {
+            self.instances.push(instance(Owner::Type(ty), transition, [agent, agent]));
         }
-        let end = model.run.until.expect("the generator writes an end");
-        let post = Post::new(n);
-        Self { model, world, instances, rows: Vec::new(), post, branchings: Vec::new(), end }
+        self.post.inboxes.resize_with(agent + 1, Default::default);
     }
 
     fn transition(&self, instance: usize) -> &'a Transition {
@@ -181,9 +203,9 @@ impl<'a> Reference<'a> {
 
     /// Whether the agent is in the mode that the transition belongs to.
     fn is_active(&self, instance: usize) -> bool {
-        let source = self.transition(instance).source;
-        self.is_pair(instance)
-            || self.world.modes_of(self.model, self.instances[instance].agents[0]).contains(&source)
+        let [first, second] = self.instances[instance].agents.map(|agent| &self.world.agents[agent]);
+        let is_there = self.is_pair(instance) || first.active.contains(&self.transition(instance).source);
+        first.lives && second.lives && is_there
     }
 
     fn scope<'s>(&'s self, world: &'s World, instance: usize) -> Scope<'s> {
@@ -192,8 +214,8 @@ impl<'a> Reference<'a> {
 
     /// When the present mode of the transition was entered.
     fn entered(&self, instance: usize) -> f64 {
-        let root = self.transition(instance).source.index() == 0;
-        if root { 0.0 } else { self.world.agents[self.instances[instance].agents[0]].entered }
+        let source = self.transition(instance).source;
+        self.world.agents[self.instances[instance].agents[0]].entered[source.index()]
     }
 
     /// The next time that a transition is scheduled for.
@@ -263,20 +285,8 @@ impl<'a> Reference<'a> {
 
     /// Rule 6.
     fn begin(&mut self) -> Option<()> {
-        // Entry actions of the modes of one depth read nothing of each other.
-        let depth = 2;
-        for level in 0..depth {
-            let mut done = Done::default();
-            for agent in 0..self.world.agents.len() {
-                let modes: Vec<ModeId> = self.world.modes_of(self.model, agent).into_iter().collect();
-                let Some(mode) = modes.get(level) else { continue };
-                let entry = &self.model.types[self.world.agents[agent].ty].modes[*mode].entry;
-                let mut own = Scope::new(self.model, &self.world, [agent, agent], false);
-                collect(entry, &mut own, &mut done);
-            }
-            self.write(&done.writes);
-            self.send(done.sent);
-        }
+        let agents: Vec<usize> = (0..self.world.agents.len()).collect();
+        self.run_entries(&self.beginnings(&agents));
         for instance in 0..self.instances.len() {
             if self.is_active(instance) {
                 self.draw(instance);
@@ -284,6 +294,53 @@ impl<'a> Reference<'a> {
         }
         self.arm();
         self.instant()
+    }
+
+    /// All modes of agents that begin.
+    fn beginnings(&self, agents: &[usize]) -> Vec<(usize, Vec<ModeId>)> {
+        agents.iter().map(|agent| (*agent, self.world.agents[*agent].active.clone())).collect()
+    }
+
+    /// Entry actions, level by level from the outermost mode that is entered: those of one level read nothing of each other.
+    /// Returns what they create and destroy.
+    fn run_entries(&mut self, entries: &[(usize, Vec<ModeId>)]) -> Done {
+        let mut all = Done::default();
+        let depth = |agent: usize, mode: ModeId| {
+            self.model.types[self.world.agents[agent].ty].modes[mode].depth
+        };
+        let levels: Vec<Vec<usize>> = entries
+            .iter()
+            .map(|(agent, entered)| {
+                let outermost = entered.iter().map(|mode| depth(*agent, *mode)).min().unwrap_or(0);
+                entered.iter().map(|mode| depth(*agent, *mode) - outermost).collect()
+            })
+            .collect();
+        let deepest = levels.iter().flatten().max().copied().unwrap_or(0);
+        for level in 0..=deepest {
+            let mut done = Done::default();
+            for ((agent, entered), levels) in entries.iter().zip(&levels) {
+                for (mode, _) in entered.iter().zip(levels).filter(|(_, of)| **of == level) {
+                    let entry = &self.model.types[self.world.agents[*agent].ty].modes[*mode].entry;
+                    let mut own = Scope::new(self.model, &self.world, [*agent, *agent], false);
+                    collect(entry, &mut own, &mut done);
+                }
+            }
+            self.write(&done.writes);
+            self.send(done.sent);
+            all.created.extend(done.created);
+            all.destroyed.extend(done.destroyed);
+        }
+        all
+    }
+
+    /// Agents come to be at the end of a micro-step, and those destroyed leave.
+    fn turn_over(&mut self, created: &[Start], destroyed: &[usize]) {
+        let born: Vec<usize> = created.iter().map(|start| self.world.add(self.model, start)).collect();
+        born.iter().for_each(|agent| self.admit(*agent));
+        self.run_entries(&self.beginnings(&born));
+        for agent in destroyed {
+            self.world.agents[*agent].lives = false;
+        }
     }
 
     fn write(&mut self, writes: &[(usize, VarRef, f64)]) {
@@ -538,19 +595,36 @@ impl<'a> Reference<'a> {
         enabled.sort_by(|a, b| rank(a).partial_cmp(&rank(b)).expect("priorities are numbers"));
         let (mut chosen, mut written, mut busy) = (Vec::new(), Vec::new(), Vec::new());
         for instance in enabled {
-            let (taken, writes) = self.effect(instance);
-            let mut agents: Vec<usize> = taken.moves.iter().map(|(agent, _)| *agent).collect();
-            if !self.is_pair(instance) {
-                agents = vec![self.instances[instance].agents[0]];
-            }
-            let free = agents.iter().all(|agent| !busy.contains(agent));
-            if free && writes.iter().all(|write| !written.contains(write)) {
-                written.extend(writes);
-                busy.extend(agents);
+            let taken = self.effect(instance);
+            let regions = self.regions(&taken);
+            let free = regions.iter().all(|region| !busy.contains(region));
+            if free && taken.done.all.iter().all(|write| !written.contains(write)) {
+                written.extend(taken.done.all.clone());
+                busy.extend(regions);
                 chosen.push(taken);
             }
         }
         chosen
+    }
+
+    /// The regions that a transition takes: its own, those of participants whose modes it changes, those of whom it destroys.
+    fn regions(&self, taken: &Taken) -> Vec<(usize, ModeId)> {
+        let all = |agent: usize| {
+            let regions = modes::regions(&self.model.types[self.world.agents[agent].ty]);
+            regions.into_iter().map(move |region| (agent, region))
+        };
+        let mut regions: Vec<(usize, ModeId)> = taken.done.destroyed.iter().copied().flat_map(all).collect();
+        if self.is_pair(taken.instance) {
+            regions.extend(taken.moves.iter().flat_map(|change| all(change.agent)));
+        } else {
+            let own = self.instances[taken.instance].agents[0];
+            let ty = &self.model.types[self.world.agents[own].ty];
+            match modes::region_of(ty, self.transition(taken.instance).source) {
+                Some(region) => regions.push((own, region)),
+                None => regions.extend(all(own)),
+            }
+        }
+        regions
     }
 
     /// What the message at its turn carries.
@@ -559,12 +633,16 @@ impl<'a> Reference<'a> {
         waiting.first().map_or(Vec::new(), |message| message.values.clone())
     }
 
-    /// What a transition does, read on the present state, and all that it might write.
-    fn effect(&self, instance: usize) -> (Taken, Vec<(usize, VarRef)>) {
+    /// What a transition does, read on the present state.
+    fn effect(&self, instance: usize) -> Taken {
         let transition = self.transition(instance);
         let agents = self.instances[instance].agents;
-        let mut moves: Vec<(usize, ModeId)> =
-            transition.target.iter().map(|target| (agents[0], target.mode)).collect();
+        let move_of = |agent: usize, target| {
+            let there = &self.world.agents[agent];
+            modes::change(&self.model.types[there.ty], (agent, there), transition.source, target)
+        };
+        let mut moves: Vec<Change> =
+            transition.target.iter().map(|target| move_of(agents[0], *target)).collect();
         let mut done = Done::default();
         let mut scope = self.scope(&self.world, instance);
         scope.received = self.received(instance);
@@ -581,19 +659,19 @@ impl<'a> Reference<'a> {
         scope.decided = &[];
         for action in &transition.actions {
             if let Action::Goto { participant, target, .. } = action {
-                moves.push((agents[*participant], target.mode));
+                moves.push(move_of(agents[*participant], *target));
             }
         }
-        for (agent, target) in &moves {
-            let modes = &self.model.types[self.world.agents[*agent].ty].modes;
-            let mut own = Scope::new(self.model, &self.world, [*agent, *agent], false);
-            collect(&modes[self.world.agents[*agent].mode].exit, &mut own, &mut done);
+        for change in &moves {
+            let modes = &self.model.types[self.world.agents[change.agent].ty].modes;
+            let mut own = Scope::new(self.model, &self.world, [change.agent, change.agent], false);
+            change.left.iter().for_each(|mode| collect(&modes[*mode].exit, &mut own, &mut done));
             let mut entry = Done::default();
-            collect(&modes[*target].entry, &mut own, &mut entry);
+            change.entered.iter().for_each(|mode| collect(&modes[*mode].entry, &mut own, &mut entry));
             done.all.extend(entry.all);
         }
         collect(&transition.actions, &mut scope, &mut done);
-        (Taken { instance, moves, writes: done.writes, sent: done.sent }, done.all)
+        Taken { instance, moves, done }
     }
 
     /// Binds the agents that the actions may name: the lowest for which the quantifier holds (rule 2).
@@ -620,8 +698,8 @@ impl<'a> Reference<'a> {
             self.log(taken);
         }
         for taken in &taken {
-            self.write(&taken.writes);
-            self.send(taken.sent.clone());
+            self.write(&taken.done.writes);
+            self.send(taken.done.sent.clone());
             if let Trigger::On { .. } = self.transition(taken.instance).trigger {
                 let agent = self.instances[taken.instance].agents[0];
                 let inbox = &mut self.post.inboxes[agent];
@@ -633,23 +711,26 @@ impl<'a> Reference<'a> {
                 self.instances[taken.instance].k += 1;
             }
         }
-        let moves: Vec<(usize, ModeId)> = taken.iter().flat_map(|taken| taken.moves.clone()).collect();
-        let mut done = Done::default();
-        for (agent, target) in &moves {
-            self.world.agents[*agent].mode = *target;
-            self.world.agents[*agent].entered = self.world.time;
+        let moves: Vec<&Change> = taken.iter().flat_map(|taken| &taken.moves).collect();
+        for change in &moves {
+            let agent = &mut self.world.agents[change.agent];
+            let ty = &self.model.types[agent.ty];
+            agent.active = after(ty, &agent.active, &change.left, &[]);
+            agent.enter(ty, self.world.time, &change.entered);
         }
-        for (agent, target) in &moves {
-            let entry = &self.model.types[self.world.agents[*agent].ty].modes[*target].entry;
-            collect(entry, &mut Scope::new(self.model, &self.world, [*agent, *agent], false), &mut done);
-        }
-        self.write(&done.writes);
-        self.send(done.sent);
+        let entries: Vec<(usize, Vec<ModeId>)> =
+            moves.iter().map(|change| (change.agent, change.entered.clone())).collect();
+        let entry = self.run_entries(&entries);
+        let of_all = taken.iter().map(|taken| &taken.done).chain([&entry]);
+        let (created, destroyed): (Vec<Vec<Start>>, Vec<Vec<usize>>) =
+            of_all.map(|done| (done.created.clone(), done.destroyed.clone())).unzip();
+        self.turn_over(&created.concat(), &destroyed.concat());
         for instance in 0..self.instances.len() {
             let fired = taken.iter().any(|taken| taken.instance == instance);
             let own = self.instances[instance].agents[0];
             let source = self.transition(instance).source;
-            let entered = !self.is_pair(instance) && moves.contains(&(own, source));
+            let enters = |change: &&Change| change.agent == own && change.entered.contains(&source);
+            let entered = !self.is_pair(instance) && moves.iter().copied().any(|change| enters(&change));
             if entered {
                 let instance = &mut self.instances[instance];
                 (instance.armed, instance.k, instance.pulse) = (true, 1, false);
@@ -689,14 +770,10 @@ impl<'a> Reference<'a> {
             other,
             modes,
         };
-        let path = |agent: usize, mode: ModeId| {
-            self.model.types[self.world.agents[agent].ty].modes[mode].path.clone()
-        };
         let mut rows = Vec::new();
-        for (agent, target) in &taken.moves {
+        for Change { agent, names, .. } in &taken.moves {
             let other = if *agent == agents[0] { agents[1] } else { agents[0] };
-            let modes = (path(*agent, self.world.agents[*agent].mode), path(*agent, *target));
-            rows.push(row(*agent, if pair { Some(other) } else { sender }, Some(modes)));
+            rows.push(row(*agent, if pair { Some(other) } else { sender }, Some(names.clone())));
         }
         if rows.is_empty() {
             rows.push(row(agents[0], if pair { Some(agents[1]) } else { sender }, None));
@@ -731,13 +808,44 @@ fn collect(actions: &[Action], scope: &mut Scope<'_>, done: &mut Done) {
                     if goes {
                         done.writes.extend(inside.writes);
                         done.sent.extend(inside.sent);
+                        done.created.extend(inside.created);
+                        done.destroyed.extend(inside.destroyed);
                     }
                 }
             }
             Action::Goto { .. } => {}
-            Action::Stop { .. } | Action::Draw { .. } | Action::Create(_) | Action::Destroy { .. } => {
-                panic!("the generator writes none of these")
+            Action::Create(create) => done.created.push(start(create, scope)),
+            Action::Destroy { agent, .. } => {
+                let agent = scope.named(*agent);
+                let ty = &scope.model.types[scope.world.agents[agent].ty];
+                done.destroyed.push(agent);
+                // Who destroys an agent writes all of it.
+                done.all.extend((0..ty.states.len()).map(|k| (agent, VarRef::State(k))));
+                done.all.extend((0..ty.discretes.len()).map(|k| (agent, VarRef::Discrete(k))));
             }
+            Action::Stop { .. } | Action::Draw { .. } => panic!("the generator writes none of these"),
         }
+    }
+}
+
+/// What an agent that is created starts with.
+fn start(create: &Create, scope: &mut Scope<'_>) -> Start {
+    let initials = &scope.model.types[create.ty].initials;
+    let mut values = |given: &[Option<Given>], declared: &[Option<Given>]| -> Vec<f64> {
+        let chosen = given.iter().zip(declared).map(|(given, declared)| given.or(*declared));
+        chosen
+            .map(|given| match given {
+                Some(Given::Value(value)) => scope.number(value),
+                Some(Given::Draw(_)) | None => panic!("the generator writes values"),
+            })
+            .collect()
+    };
+    Start {
+        ty: create.ty,
+        mode: create.mode,
+        params: values(&create.params, &initials.params),
+        states: values(&create.states, &initials.states),
+        discretes: values(&create.discretes, &initials.discretes),
+        links: create.links.iter().map(|link| link.and_then(|link| scope.agent(link))).collect(),
     }
 }

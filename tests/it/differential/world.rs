@@ -2,9 +2,10 @@
 
 use std::cell::RefCell;
 
-use hyc::model::ir::{ModeId, Model, Trigger, TypeId};
+use hyc::model::ir::{AgentType, Instance, ModeId, Model, Trigger, TypeId};
 
 use super::evaluate::Scope;
+use super::modes::{after, beginning};
 
 /// All agents at one time.
 #[derive(Clone)]
@@ -24,10 +25,14 @@ pub struct World {
 pub struct Agent {
     /// Its type.
     pub ty: TypeId,
-    /// Its mode.
-    pub mode: ModeId,
-    /// When it entered it, s.
-    pub entered: f64,
+    /// Whether it has not been destroyed.
+    pub lives: bool,
+    /// The modes that it is in, outer ones before inner ones.
+    pub active: Vec<ModeId>,
+    /// By mode, when it was entered last, s.
+    pub entered: Vec<f64>,
+    /// By mode, the submode that was active last.
+    pub last: Vec<Option<ModeId>>,
     /// Its first state in [`World::states`].
     pub first: usize,
     /// Values of its parameters.
@@ -38,43 +43,57 @@ pub struct Agent {
     pub links: Vec<Option<usize>>,
 }
 
+impl Agent {
+    /// Notes that it enters modes now, on top of those that it is in.
+    pub fn enter(&mut self, ty: &AgentType, time: f64, entered: &[ModeId]) {
+        self.active = after(ty, &self.active, &[], entered);
+        for mode in entered {
+            self.entered[mode.index()] = time;
+            if let Some(parent) = ty.modes[*mode].parent {
+                self.last[parent.index()] = Some(*mode);
+            }
+        }
+    }
+}
+
 impl World {
     /// The agents of `system { }` before their entry actions.
     pub fn new(model: &Model, nudge: f64) -> Self {
         let mut world = Self { time: 0.0, states: Vec::new(), agents: Vec::new(), nudge };
-        for agent in &model.population.agents {
-            world.agents.push(Agent {
-                ty: agent.ty,
-                mode: agent.mode,
-                entered: 0.0,
-                first: world.states.len(),
-                params: agent.params.clone(),
-                discretes: agent.discretes.clone(),
-                links: agent.links.clone(),
-            });
-            world.states.extend(&agent.states);
-            world.states.extend(model.types[agent.ty].rates().map(|_| 1.0));
+        for agent in model.population.agents.iter() {
+            world.add(model, agent);
         }
         world
     }
 
-    /// The modes that an agent is in, outermost first.
-    pub fn modes_of(&self, model: &Model, agent: usize) -> Vec<ModeId> {
-        let modes = &model.types[self.agents[agent].ty].modes;
-        let mut path = vec![self.agents[agent].mode];
-        while let Some(parent) = modes[path[0]].parent {
-            path.insert(0, parent);
-        }
-        path
+    /// Adds an agent before its entry actions, and returns its number.
+    pub fn add(&mut self, model: &Model, start: &Instance) -> usize {
+        let ty = &model.types[start.ty];
+        let mut agent = Agent {
+            ty: start.ty,
+            lives: true,
+            active: Vec::new(),
+            entered: vec![self.time; ty.modes.len()],
+            last: vec![None; ty.modes.len()],
+            first: self.states.len(),
+            params: start.params.clone(),
+            discretes: start.discretes.clone(),
+            links: start.links.clone(),
+        };
+        agent.enter(ty, self.time, &beginning(ty, start.mode));
+        self.agents.push(agent);
+        self.states.extend(&start.states);
+        self.states.extend(ty.rates().map(|_| 1.0));
+        self.agents.len() - 1
     }
 
     /// The rates of all states, and which way the branches in them went.
     pub fn rates(&self, model: &Model) -> (Vec<f64>, Vec<bool>) {
         let mut rates: Vec<f64> = (1..=self.states.len()).map(|k| self.nudge * k as f64).collect();
         let branches = RefCell::new(Vec::new());
-        for (k, agent) in self.agents.iter().enumerate() {
-            for mode in self.modes_of(model, k) {
-                for (state, rate, _) in &model.types[agent.ty].modes[mode].flow {
+        for (k, agent) in self.agents.iter().enumerate().filter(|(_, agent)| agent.lives) {
+            for mode in &agent.active {
+                for (state, rate, _) in &model.types[agent.ty].modes[*mode].flow {
                     let mut scope = Scope::new(model, self, [k, k], false);
                     scope.branches = Some(&branches);
                     rates[agent.first + state] += scope.number(*rate);
@@ -86,7 +105,7 @@ impl World {
                 let mut scope = Scope::new(model, self, [k, k], false);
                 let open = guard.is_none_or(|guard| scope.truth(guard));
                 branches.borrow_mut().push(open);
-                if open && self.modes_of(model, k).contains(&transition.source) {
+                if open && agent.active.contains(&transition.source) {
                     scope.branches = Some(&branches);
                     rates[agent.first + ty.states.len() + hazard] -= scope.number(rate);
                 }

@@ -70,6 +70,22 @@ fn rule_02_a_change_in_one_region_arms_nothing_in_another() {
 }
 
 #[test]
+fn rule_04_a_mode_that_goes_to_the_history_of_its_region_leaves_other_regions_alone() {
+    let run = simulate_by_both_forms(
+        "agent A { discrete n = 0
+           region P { initial mode P1 { exit { n := n + 10 }  late: after 3 -> P2 }  mode P2 { } }
+           region Q { initial mode Q1 { after 1 -> Q.history { n := n + 1 } }  mode Q2 { } } }
+         system { a = A() }  run { until 3.5 }",
+    );
+    assert_eq!(
+        run.log(),
+        ["0 A.Q1->Q.history a Q.Q1->Q.Q1"; 3].into_iter().chain(["0 A.late a P.P1->P.P2"]).collect::<Vec<_>>()
+    );
+    assert_eq!(run.value("a.n"), 13.0);
+    assert_eq!(run.mode("a"), "P.P2|Q.Q1");
+}
+
+#[test]
 fn rule_04_each_region_has_its_turn_in_one_micro_step() {
     let run = simulate_by_both_forms(
         "agent A { discrete p = 0, q = 0
