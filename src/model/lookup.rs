@@ -149,18 +149,31 @@ impl<'a> Context<'a> {
     }
 
     /// The line before knot k: `y + s (e - x)` from the knot before it, of a cubic `y + d (s + d (c2 + d c3))` with d = e - x; constant outside.
+    /// Where a cubic comes to rest at knot k, its second half is written from there: so rounding leads neither half beyond its row.
     fn piece(&mut self, pieces: &Pieces, k: usize) -> Value {
         let span = pieces.span;
         let from = k.saturating_sub(1);
-        let value = self.unchecked(pieces.values[from], span);
-        let is_flat = || pieces.powers(k).iter().all(|&power| power == 0.0);
-        if k == 0 || k == pieces.at.len() || is_flat() {
-            return value;
+        let before = pieces.powers(k);
+        if k == 0 || k == pieces.at.len() || before.iter().all(|&power| power == 0.0) {
+            return self.unchecked(pieces.values[from], span);
         }
-        let knot = self.unchecked(pieces.at[from], span);
-        let away = self.apply(Op::Sub, [pieces.argument, knot.id], Ty::Real, span);
+        let first = self.polynomial(pieces, from, before);
+        if !pieces.rests_at(k) {
+            return first;
+        }
+        let second = self.polynomial(pieces, k, pieces.powers_from_behind(k));
+        let middle = self.unchecked(0.5 * pieces.at[from] + 0.5 * pieces.at[k], span);
+        let condition = self.apply(Op::Lt, [pieces.argument, middle.id], Ty::Bool, span);
+        self.apply(Op::Select, [condition.id, first.id, second.id], Ty::Real, span)
+    }
+
+    /// The value at a knot and powers of the distance from it.
+    fn polynomial(&mut self, pieces: &Pieces, knot: usize, powers: Vec<f64>) -> Value {
+        let span = pieces.span;
+        let [value, place] = [pieces.values[knot], pieces.at[knot]].map(|number| self.unchecked(number, span));
+        let away = self.apply(Op::Sub, [pieces.argument, place.id], Ty::Real, span);
         // From the highest power down.
-        let mut powers = pieces.powers(k).into_iter().rev();
+        let mut powers = powers.into_iter().rev();
         let mut rise = self.unchecked(powers.next().unwrap_or(0.0), span);
         for power in powers {
             let higher = self.apply(Op::Mul, [rise.id, away.id], Ty::Real, span);
@@ -180,16 +193,47 @@ impl<'a> Context<'a> {
 }
 
 impl Pieces {
-    /// What stands before the first and the higher powers of the distance from the knot before knot k.
+    /// What stands before the first and the higher powers of the distance from the knot before knot k; nothing outside.
     fn powers(&self, k: usize) -> Vec<f64> {
+        if k == 0 || k == self.at.len() {
+            return Vec::new();
+        }
         let h = self.at[k] - self.at[k - 1];
         let rise = (self.values[k] - self.values[k - 1]) / h;
         match self.slopes.get(k - 1..=k) {
             Some(&[first, last]) => {
                 vec![first, (3.0 * rise - 2.0 * first - last) / h, (first + last - 2.0 * rise) / (h * h)]
             }
-            _ => vec![rise],
+            _ => vec![self.within(k, rise)],
         }
+    }
+
+    /// The same from knot k, before which the distance is negative.
+    fn powers_from_behind(&self, k: usize) -> Vec<f64> {
+        let h = self.at[k] - self.at[k - 1];
+        let rise = (self.values[k] - self.values[k - 1]) / h;
+        let [first, last] = [self.slopes[k - 1], self.slopes[k]];
+        vec![last, (first + 2.0 * last - 3.0 * rise) / h, (first + last - 2.0 * rise) / (h * h)]
+    }
+
+    /// Whether a cubic turns or ends at knot k, so that its values near the knot are all on one side of it.
+    fn rests_at(&self, k: usize) -> bool {
+        self.slopes.get(k).is_some_and(|&slope| slope == 0.0 || k == self.at.len() - 1)
+    }
+
+    /// The slope of the line before knot k, so that rounding does not lead it beyond the knot's value.
+    fn within(&self, k: usize, mut rise: f64) -> f64 {
+        let (h, from, to) = (self.at[k] - self.at[k - 1], self.values[k - 1], self.values[k]);
+        let toward_zero = |rise: f64| if rise > 0.0 { rise.next_down() } else { rise.next_up() };
+        // It is a few numbers away; where the values overflow there is none.
+        for _ in 0..8 {
+            let end = from + rise * h;
+            if if rise > 0.0 { end <= to } else { end >= to } {
+                return rise;
+            }
+            rise = toward_zero(rise);
+        }
+        rise
     }
 }
 
