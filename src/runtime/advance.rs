@@ -566,7 +566,7 @@ fn kink_time(
     let mut search = |atom: &Atom, truth: bool| {
         let closed = atom.relation == Relation::NonPositive;
         let reach = 2.0 * f64::EPSILON * until.abs();
-        let known = Known { truth, closed, slack: 0.0, settled: false, grazed: false, reach };
+        let known = Known { truth, closed, slack: 0.0, settled: false, grazed: false, joins: false, reach };
         let mut curve = AtomCurve::new(agents, atom, slots, &[], curves);
         // What is of nobody alone has no kink, however long the step.
         if atom.slots.iter().any(|&slot| slots[slot] == ABSENT) && curve.jet(start)[0].is_nan() {

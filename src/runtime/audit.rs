@@ -66,6 +66,7 @@ impl Audit {
                 slack: 0.0,
                 settled: true,
                 grazed: false,
+                joins: false,
                 reach: 2.0 * ulp(to),
             };
             let mut curve =

@@ -176,25 +176,36 @@ impl<'p> Jumping<'_, 'p> {
             let interrupt = self.interrupt;
             let mut curve = self.curve(&jumps.between, &own).with_interrupt(interrupt);
             let search = first_flip(&mut curve, s, end, Known { reach, ..known }, pieces_max);
-            let Some(next) = next else { return (search, None) };
+            // What changes as a surface is met is told by both of its sides, not by g going on beyond it.
+            let is_at_end = matches!(search, Search::Flip(flip) if flip.time >= end - time_resolution(end));
+            let near = match next {
+                Some(next) => next.flip.near,
+                None if is_at_end && self.meets_soon(&own, end) => end,
+                None => return (search, None),
+            };
             match search {
                 Search::None | Search::Along => {}
-                Search::Flip(flip) if flip.time >= end => {}
+                Search::Flip(_) if is_at_end => {}
                 Search::Flip(_) | Search::Until(_) | Search::Undecided => return (search, None),
             }
             let leap = self.leap(end, known.truth);
             let is_crossing = self.atom.relation == Relation::Crossing;
             if leap.after != known.truth || !is_crossing && leap.at != known.truth {
-                return (Search::Flip(Flip { time: end, undecided: false, ..next.flip }), Some(leap));
+                return (Search::Flip(Flip { time: end, near, undecided: false }), Some(leap));
             }
             if end >= to {
                 return (Search::None, None);
             }
             s = end;
             own = self.own(s, Side::After, time_resolution(s));
-            known = Known { slack: 0.0, settled: true, grazed: false, ..known };
+            known = Known { slack: 0.0, settled: true, grazed: false, joins: false, ..known };
         }
         (Search::Until(s), None)
+    }
+
+    /// Whether a surface is met at t or within the resolution of time after it.
+    fn meets_soon(&mut self, own: &[f64], t: f64) -> bool {
+        self.own(t, Side::After, time_resolution(t)) != own
     }
 
     /// The truths at a surface that is met at t.
@@ -259,7 +270,7 @@ impl<'p> Jumping<'_, 'p> {
         e: f64,
     ) -> Result<Option<Flip>, GivenUp> {
         let closed = atom.relation == Relation::NonPositive;
-        let known = Known { truth, closed, slack: 0.0, settled: true, grazed: true, reach: 2.0 * ulp(e) };
+        let known = Known { truth, closed, slack: 0.0, settled: true, grazed: true, joins: false, reach: 2.0 * ulp(e) };
         let (mut from, pieces_max) = (s, self.pieces_max);
         let mut curve = self.curve(atom, own);
         loop {

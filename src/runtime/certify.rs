@@ -2,7 +2,7 @@
 use smallvec::SmallVec;
 
 use crate::codegen::program::Atom;
-use crate::runtime::branches::Jumping;
+use crate::runtime::branches::{Jumping, width};
 use crate::runtime::detect::AtomCurve;
 use crate::runtime::engine::{Due, Engine};
 use crate::runtime::fold::{self, Folded};
@@ -107,11 +107,18 @@ impl Engine<'_, '_> {
             slack: state.slack,
             settled: state.settled,
             grazed: state.grazed == from,
+            joins: !state.settled && state.slack == 0.0,
             reach: if blocked { time_resolution(to) } else { 2.0 * ulp(to) },
         };
         let (search, leap) = self.search(atom, (&slots, &folds), from, to, known);
         match search {
-            Search::None => self.certified(index, to),
+            Search::None => {
+                // It may not have left its boundary yet.
+                let stays =
+                    known.settled && atom.smooth && self.is_on_boundary((atom, &slots, &folds), to);
+                self.certified(index, to);
+                self.guards.atoms[index].settled = stays;
+            }
             Search::Along => {
                 self.certified(index, to);
                 let state = &mut self.guards.atoms[index];
@@ -150,6 +157,17 @@ impl Engine<'_, '_> {
                 self.queues.flips.push(Due { time: flip.time, number: index as u32, version: state.version });
             }
         }
+    }
+
+    /// Whether g is within rounding of zero at a time.
+    fn is_on_boundary(
+        &mut self,
+        (atom, slots, folds): (&Atom, &Slots, &[Folded<'_>]),
+        time: f64,
+    ) -> bool {
+        let mut curve = AtomCurve::new(&self.agents, atom, slots, folds, &mut self.curves);
+        let (value, bound) = (curve.jet(time)[0], curve.jet_range(time, time)[0]);
+        value.abs() <= width(bound)
     }
 
     /// Whether the step of an agent in some slots ends at `time` because a branch of its flow changes there.

@@ -52,6 +52,7 @@ mod aggregates;
 mod censuses;
 mod lives;
 mod imports;
+mod table_thresholds;
 mod tables;
 mod lists;
 mod hierarchies;

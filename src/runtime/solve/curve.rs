@@ -38,6 +38,8 @@ pub struct Known {
     pub settled: bool,
     /// Whether it grazed zero at the start itself: it does not do so again before it has left it.
     pub grazed: bool,
+    /// Whether it is known up to the start by a search of its own, which may have left a zero at the start itself.
+    pub joins: bool,
     /// A root that is due within this time after the end counts as at the end, s.
     pub reach: f64,
 }

@@ -50,9 +50,7 @@ pub fn first_flip(curve: &mut dyn Curve, s: f64, e: f64, known: Known, pieces_ma
                 let is_given = known.settled || !known.touching();
                 return if is_given { Search::Along } else { Search::Flip(Flip::touch(s)) };
             }
-            known_here.slack = 0.0;
-            known_here.settled = false;
-            known_here.grazed = false;
+            known_here = Known { slack: 0.0, settled: false, grazed: false, joins: false, ..known_here };
         }
         looked_at += 1;
         if f.curve.given_up() {
@@ -144,6 +142,8 @@ fn enter(f: &mut Turned<'_>, (s, e): (f64, f64), known: Known) -> Result<Entry, 
         return Ok(Entry::Boundary);
     }
     match direction {
+        // Clear up to s, where one stretch ends and the next begins, and clear again from there.
+        Direction::Up if known.joins && known.touching() && !known.grazed => Err(Flip::touch(s)),
         Direction::Up => Ok(Entry::Boundary),
         Direction::Down => Err(flip),
         Direction::Along if known.truth == known.closed => Ok(Entry::Boundary),
@@ -229,7 +229,9 @@ fn clears_by_second_rate(f: &mut Turned<'_>, s: f64, e: f64, f2: &Interval) -> b
     if !f2.lo.is_finite() {
         return false;
     }
-    let (middle, radius) = (0.5 * (s + e), 0.5 * (e - s));
+    let middle = 0.5 * (s + e);
+    // The middle is rounded; how far the ends are from it is not.
+    let radius = (middle - s).max(e - middle);
     let jet = f.jet(middle);
     let least = jet[0] - jet[1].abs() * radius + 0.5 * f2.lo.min(0.0) * radius * radius;
     least > 0.0 && {
