@@ -150,6 +150,13 @@ impl<'p> Jumping<'_, 'p> {
         // At the joint of two steps what will be met soon has not been met; just after an instant what was met with it has been.
         let resolution = if known.settled { time_resolution(s) } else { 0.0 };
         let mut own = self.own(s, Side::After, resolution);
+        if known.joins
+            && self.own(s - 2.0 * time_resolution(s), Side::After, 0.0) != own
+            && let Some(leap) = self.change_at(s, known.truth)
+        {
+            // The surface is where one search ended and the next begins.
+            return (Search::Flip(Flip::at(s)), Some(leap));
+        }
         let mut at_once = 0;
         for _ in 0..self.pieces_max {
             if self.interrupt.load(Ordering::Relaxed) {
@@ -188,9 +195,7 @@ impl<'p> Jumping<'_, 'p> {
                 Search::Flip(_) if is_at_end => {}
                 Search::Flip(_) | Search::Until(_) | Search::Undecided => return (search, None),
             }
-            let leap = self.leap(end, known.truth);
-            let is_crossing = self.atom.relation == Relation::Crossing;
-            if leap.after != known.truth || !is_crossing && leap.at != known.truth {
+            if let Some(leap) = self.change_at(end, known.truth) {
                 return (Search::Flip(Flip { time: end, near, undecided: false }), Some(leap));
             }
             if end >= to {
@@ -206,6 +211,13 @@ impl<'p> Jumping<'_, 'p> {
     /// Whether a surface is met at t or within the resolution of time after it.
     fn meets_soon(&mut self, own: &[f64], t: f64) -> bool {
         self.own(t, Side::After, time_resolution(t)) != own
+    }
+
+    /// The truths at a surface that is met at t, if one of them is another than that before it.
+    fn change_at(&mut self, t: f64, before: bool) -> Option<Leap> {
+        let leap = self.leap(t, before);
+        let is_crossing = self.atom.relation == Relation::Crossing;
+        (leap.after != before || !is_crossing && leap.at != before).then_some(leap)
     }
 
     /// The truths at a surface that is met at t.
