@@ -6,20 +6,22 @@
 
 use rustc_hash::FxHashSet;
 
-use crate::codegen::program::{Atom, Kink, KinkKind, Relation};
 use crate::codegen::trace::Blame;
 use crate::runtime::ahead::Way;
-use crate::runtime::detect::{AtomCurve, CurveRows};
+use crate::runtime::detect::CurveRows;
 use crate::runtime::flow::{GroupFlow, Witness};
 use crate::runtime::groups::{Group, KinkHit};
+use crate::runtime::kinks::{kink_time, kinks_at_hand, turn};
 use crate::runtime::limits::Limits;
-use crate::runtime::population::{ABSENT, Agent, Agents, Slots};
+use crate::runtime::population::{Agent, Agents};
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::integrate::{Integrator, Stuck};
 use crate::runtime::solve::method::{Flow as _, Stretch};
-use crate::runtime::solve::roots::{Curve, Known, Search, first_flip};
 use crate::runtime::solve::switch::{Regime, Switch};
-use crate::runtime::solve::{MethodName, Methods, time_resolution};
+use crate::runtime::solve::{MethodName, Methods};
+
+/// A step that is cut behind this share of it is kept as it is.
+const NEARLY_ALL: f64 = 0.9;
 
 /// Counts of steps.
 #[derive(Clone, Debug, Default)]
@@ -170,11 +172,45 @@ impl Stepper {
                     // It was the leader's way that ended, not the accuracy.
                     *next = next.max(wanted);
                 }
+                let start = group.clock;
                 self.keep(agents, group, &stretch);
-                self.stop_at_kinks(agents, group, curves)
+                let advance = self.stop_at_kinks(agents, group, curves);
+                let taken = group.clock - start;
+                if advance == Advance::Moved
+                    && self.integrator.regime() == Regime::Stiff
+                    && taken < NEARLY_ALL * stretch.h
+                {
+                    return self.step_again(agents, group, curves, start);
+                }
+                advance
             }
             Err(stuck) => Advance::Blocked(self.culprit(agents, group, stuck)),
         }
+    }
+
+    /// Takes the last step again, which a kink has cut, no further than to there. A stiff step is long, and was accepted by how
+    /// large the states are at its end, to which the flow before the kink does not lead.
+    fn step_again(
+        &mut self,
+        agents: &mut Agents<'_>,
+        group: &mut Group,
+        curves: &mut CurveRows,
+        start: f64,
+    ) -> Advance {
+        let mut rest = self.x.as_slice();
+        for &member in &group.members {
+            let states = &mut agents.agents[member].states;
+            let (own, others) = rest.split_at(states.len());
+            states.copy_from_slice(own);
+            rest = others;
+        }
+        let step_max = self.integrator.step_max;
+        self.integrator.step_max = step_max.min(group.clock - start);
+        (group.clock, group.kinks) = (start, Vec::new());
+        group.integration.restart();
+        let again = self.step(agents, group, curves);
+        self.integrator.step_max = step_max;
+        again
     }
 
     /// From now on no step is longer than `step_max`, and none leads beyond `stop`, both s.
@@ -510,86 +546,4 @@ fn retake(agents: &mut Agents<'_>, agent: usize, group: &mut Group) -> bool {
     group.integration.note_accepted(step.start, step.h, step.ratio);
     group.clock = step.end;
     true
-}
-
-/// Sets the locks that some kinks change.
-fn turn(agents: &mut Agents<'_>, hits: &[KinkHit]) {
-    for hit in hits {
-        let lock = agents.flow(hit.agent).kinks[hit.kink].lock;
-        agents.agents[hit.agent].aux[lock] = hit.lock;
-    }
-}
-
-/// The kinks that an agent, whose segment ends at `clock`, reaches within the resolution of time after it, and when.
-fn kinks_at_hand(
-    agents: &Agents<'_>,
-    agent: usize,
-    clock: f64,
-    curves: &mut CurveRows,
-) -> Vec<(f64, KinkHit)> {
-    let flow = agents.flow(agent);
-    let slots = agents.slots(&flow.frame, &[agent]);
-    let mut at_hand = Vec::new();
-    for (number, kink) in flow.kinks.iter().enumerate() {
-        let lock = agents.agents[agent].aux[kink.lock];
-        let mut meets = |atom: &Atom, beyond: f64| {
-            let [g, rate, _] = AtomCurve::new(agents, atom, &slots, &[], curves).jet(clock);
-            let left = -g / rate;
-            if left >= 0.0 && left <= time_resolution(clock) {
-                let hit = KinkHit { agent, kink: number, before: lock, lock: beyond };
-                at_hand.push(((clock + left).next_up(), hit));
-            }
-        };
-        match &kink.kind {
-            KinkKind::Branch(atom) => meets(atom, 1.0 - lock),
-            KinkKind::Integer { below, above } => {
-                meets(below, lock - 1.0);
-                meets(above, lock + 1.0);
-            }
-        }
-    }
-    at_hand
-}
-
-/// When the new segment of an agent first meets a kink, and the value that its lock then takes.
-fn kink_time(
-    agents: &Agents<'_>,
-    agent: usize,
-    kink: &Kink,
-    slots: &Slots,
-    until: f64,
-    curves: &mut CurveRows,
-    pieces_max: u32,
-) -> Option<(f64, f64)> {
-    let lock = agents.agents[agent].aux[kink.lock];
-    let start = agents.agents[agent].segment.start;
-    let mut search = |atom: &Atom, truth: bool| {
-        let closed = atom.relation == Relation::NonPositive;
-        let reach = 2.0 * f64::EPSILON * until.abs();
-        let known = Known { truth, closed, slack: 0.0, settled: false, grazed: false, joins: false, reach };
-        let mut curve = AtomCurve::new(agents, atom, slots, &[], curves);
-        // What is of nobody alone has no kink, however long the step.
-        if atom.slots.iter().any(|&slot| slots[slot] == ABSENT) && curve.jet(start)[0].is_nan() {
-            return None;
-        }
-        let mut from = start;
-        loop {
-            match first_flip(&mut curve, from, until, known, pieces_max) {
-                Search::None | Search::Along | Search::Undecided => return None,
-                Search::Flip(flip) => return Some(flip.time),
-                Search::Until(reached) => from = reached,
-            }
-        }
-    };
-    match &kink.kind {
-        KinkKind::Branch(atom) => search(atom, lock != 0.0).map(|time| (time, 1.0 - lock)),
-        KinkKind::Integer { below, above } => {
-            let down = search(below, false).map(|time| (time, lock - 1.0));
-            let up = search(above, false).map(|time| (time, lock + 1.0));
-            match (down, up) {
-                (Some(down), Some(up)) => Some(if down.0 <= up.0 { down } else { up }),
-                (down, up) => down.or(up),
-            }
-        }
-    }
 }

@@ -69,6 +69,7 @@ mod notes;
 mod flow;
 mod failure;
 mod fate;
+mod kinks;
 mod advance;
 mod stiffness;
 mod repetition;
