@@ -177,7 +177,7 @@ impl Stepper {
                 let advance = self.stop_at_kinks(agents, group, curves);
                 let taken = group.clock - start;
                 if advance == Advance::Moved
-                    && self.integrator.regime() == Regime::Stiff
+                    && self.is_by_stiff_method()
                     && taken < NEARLY_ALL * stretch.h
                 {
                     return self.step_again(agents, group, curves, start);
@@ -185,6 +185,13 @@ impl Stepper {
                 advance
             }
             Err(stuck) => Advance::Blocked(self.culprit(agents, group, stuck)),
+        }
+    }
+
+    fn is_by_stiff_method(&self) -> bool {
+        match self.methods {
+            Methods::One(name) => name == MethodName::Stiff,
+            Methods::Automatic(_) => self.integrator.regime() == Regime::Stiff,
         }
     }
 
