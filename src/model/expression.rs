@@ -5,11 +5,11 @@
 
 use super::context::{Context, Scope, Value};
 use super::error::{LimitError, TypeError};
-use super::ir::ExprKind;
+use super::ir::{ExprId, ExprKind};
 use super::limits;
 use super::types::{Quantity, Slot, Ty};
 use crate::base::Span;
-use crate::math::Op;
+use crate::math::{Op, Scale};
 use crate::syntax::ast::{self, CompareOp, ProductOp, SumOp, UnaryOp};
 
 impl<'a> Context<'a> {
@@ -88,7 +88,30 @@ impl<'a> Context<'a> {
             }
             _ => self.lower(scope, expr),
         };
+        let value = self.in_declared_unit(value, slot, expr.span);
         self.fit(value, slot.ty, expr.span, what)
+    }
+
+    /// What is worked out from bare literals alone is one: in the unit of what it goes into.
+    fn in_declared_unit(&mut self, value: Value, slot: Slot, span: Span) -> Value {
+        if slot.ty != Ty::Real || slot.scale() == Scale::ONE || !self.is_bare(value.id) {
+            return value;
+        }
+        if let ExprKind::Number(number) = self.model.exprs[value.id].kind {
+            return self.number(slot.scale().to_si(number), Ty::Real, span);
+        }
+        let unit = self.number(slot.scale().to_si(1.0), Ty::Real, span);
+        self.apply(Op::Mul, [value.id, unit.id], Ty::Real, span)
+    }
+
+    fn is_bare(&self, id: ExprId) -> bool {
+        match &self.model.exprs[id].kind {
+            ExprKind::Number(_) => self.facts[id.index()].bare,
+            ExprKind::Apply(op, operands) => {
+                !op.is_boolean() && operands.iter().all(|&operand| self.is_bare(operand))
+            }
+            _ => false,
+        }
     }
 
     /// A bare literal in the unit of what it goes into.
@@ -289,7 +312,10 @@ impl<'a> Context<'a> {
             (ast::ExprKind::If { condition, then, otherwise }, _) => {
                 self.lower_if(scope, condition, [then, otherwise], slot, branch.span)
             }
-            _ => self.lower(scope, branch),
+            _ => {
+                let value = self.lower(scope, branch);
+                self.in_declared_unit(value, slot, branch.span)
+            }
         }
     }
 

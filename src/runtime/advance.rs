@@ -20,9 +20,6 @@ use crate::runtime::solve::method::{Flow as _, Stretch};
 use crate::runtime::solve::switch::{Regime, Switch};
 use crate::runtime::solve::{MethodName, Methods};
 
-/// A step that is cut behind this share of it is kept as it is.
-const NEARLY_ALL: f64 = 0.9;
-
 /// Counts of steps.
 #[derive(Clone, Debug, Default)]
 pub struct Counts {
@@ -175,11 +172,8 @@ impl Stepper {
                 let start = group.clock;
                 self.keep(agents, group, &stretch);
                 let advance = self.stop_at_kinks(agents, group, curves);
-                let taken = group.clock - start;
-                if advance == Advance::Moved
-                    && self.is_by_stiff_method()
-                    && taken < NEARLY_ALL * stretch.h
-                {
+                let is_cut = advance == Advance::Moved && group.clock < stretch.end;
+                if is_cut && self.is_by_stiff_method() && self.is_judged_beyond(agents, group) {
                     return self.step_again(agents, group, curves, start);
                 }
                 advance
@@ -195,8 +189,16 @@ impl Stepper {
         }
     }
 
-    /// Takes the last step again, which a kink has cut, no further than to there. A stiff step is long, and was accepted by how
-    /// large the states are at its end, to which the flow before the kink does not lead.
+    /// Whether the last step, which a kink has cut, was accepted by states at its end that are much larger than where it is cut.
+    fn is_judged_beyond(&self, agents: &Agents<'_>, group: &Group) -> bool {
+        let here = group.members.iter().flat_map(|&member| &agents.agents[member].states);
+        self.x.iter().zip(&self.integrator.trial.x_new).zip(here).any(|((start, end), here)| {
+            let allowed = |x: &f64| self.accuracy.allowed(start.abs().max(x.abs()));
+            allowed(end) > 2.0 * allowed(here)
+        })
+    }
+
+    /// Takes the last step again, no further than to the kink that has cut it: the flow before the kink does not lead to its end.
     fn step_again(
         &mut self,
         agents: &mut Agents<'_>,

@@ -2,6 +2,7 @@
 
 use hyc::base::render::{Colours, render};
 use hyc::calculus::system::KinkKind;
+use hyc::model::ir::Integrator;
 
 use crate::harness::{Case, all_near, near};
 
@@ -191,4 +192,53 @@ fn a_spline_of_two_rows_is_their_line() {
     .file("two.csv", "t,v\n0,1\n2,5\n")
     .run();
     near(run.value("a.x"), 6.0, 1e-12);
+}
+
+#[test]
+fn rounding_leads_no_spline_beyond_its_rows() {
+    // The rows at 0 are the least: a bound, a hazard and a strict guard all look at them.
+    for rows in ["0,0.8\n1.9,0\n2.6,2.1\n", "0,0.2\n1,0\n1.8,2.1\n", "0,0.8\n2,0\n2.8,2\n", "0,1.7\n0.3,0\n0.9,0.4\n"] {
+        let run = Case::new(
+            "agent A { state x = 0  let u = spline(\"rows.csv\", \"v\", time)
+               flow { x' = u }  invariant u >= 0  below: when u < 0 { }  hit: rate u { } }
+             system { a = A() }  run { until 3 }",
+        )
+        .file("rows.csv", &format!("t,v\n{rows}"))
+        .run();
+        assert_eq!(run.times("A.below"), Vec::<f64>::new(), "{rows}");
+    }
+}
+
+#[test]
+fn a_bound_that_is_touched_within_rounding_before_a_kink_ends() {
+    // 0.2 (1 - t)^3, written so that rounding takes it below zero just before 1
+    let run = Case::new(
+        "agent A { state x = 0  flow { x' = 1 }
+           assert (if time < 1 then time*(time*(0.6000000000000001 - 0.20000000000000007*time) - 0.6000000000000001) + 0.2
+                   else time - 1) >= -0.1
+           assert (if time < 1 then time*(time*(0.6000000000000001 - 0.20000000000000007*time) - 0.6000000000000001) + 0.2
+                   else time - 1) >= 0 }
+         system { a = A() }  run { until 3 }",
+    )
+    .run();
+    near(run.value("a.x"), 3.0, 1e-12);
+}
+
+#[test]
+fn rule_15_a_stiff_step_is_not_judged_by_where_a_cubic_leads_beyond_its_row() {
+    let rows = [(1.0, 0.0), (2.0, 1.0), (2.01, 5.0), (12.0, 0.0)];
+    let text = rows.iter().fold("z,v\n".to_string(), |text, (z, v)| format!("{text}{z},{v}\n"));
+    let model = |z: &str| {
+        let text = format!(
+            "agent A {{ state z = 1, d = 0  flow {{ z' = 2  d' = spline(\"steep.csv\", \"v\", {z}) }} }}
+             system {{ a = A() }}  run {{ until 10 }}"
+        );
+        Case::new(&text)
+    };
+    // the integral by the argument that is exact
+    let exact = model("1 + 2*time").file("steep.csv", &text).tolerance(1e-12).run().value("a.d");
+    for integrator in [Integrator::Stiff, Integrator::Auto, Integrator::Tsit5, Integrator::Adams] {
+        let run = model("z").file("steep.csv", &text).integrator(integrator).tolerance(1e-9).run();
+        near(run.value("a.d"), exact, 1e-6);
+    }
 }

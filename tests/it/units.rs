@@ -393,3 +393,21 @@ fn a_bare_literal_a_csv_cell_a_p_value_and_an_output_column_are_in_the_declared_
     assert!((x[0] - 1.0).abs() < 1e-9 && (x[1] - 2.203).abs() < 1e-9, "{x:?}");
     assert_eq!(last[2][4..].join(","), "33.3,87.6,7.3");
 }
+
+#[test]
+fn what_is_worked_out_from_bare_literals_alone_is_in_the_declared_unit() {
+    let run = Case::new(
+        "fn six(): real [km] = 5 + 1
+         agent A(a: real [km] = 12/2, b: real [km] = if 1 < 2 then 2*3 else 0) {
+           state p: real [km] = 2*3, q: real [km] = sqrt(36), r: real [km] = min(6, 7), s: real [km] = -(2 - 8)
+           discrete t: real [km] = 2^2 + 2, u: real [km] = 2 [km] * 3, v: real [km] = six()
+           flow { p' = 0  q' = 0  r' = 0  s' = 0 }
+           set: when time >= 1 [s] { t := 3 + 4  r := 7*1 [km] } }
+         system { a = A()  b = A(a = 3 + 3) }  run { until 2 [s] }",
+    )
+    .run();
+    for name in ["p", "q", "s", "u", "v"] {
+        assert_eq!(run.value(&format!("a.{name}")), 6.0, "{name}");
+    }
+    assert_eq!([run.value("a.t"), run.value("a.r")], [7.0, 7.0]);
+}
