@@ -69,11 +69,13 @@ mod notes;
 mod flow;
 mod failure;
 mod fate;
+mod counts;
 mod advance;
 mod stiffness;
 mod repetition;
 mod mail;
 mod record;
+mod slowest;
 mod neighbours;
 mod robustness;
 mod signal;
@@ -189,7 +191,7 @@ fn last_words(engine: &mut Engine<'_, '_>, end: Result<End, Failure>) -> End {
         engine.watch_now();
     }
     let end = end.unwrap_or_else(end_of);
-    engine.tell_last().map_or_else(end_of, |()| end)
+    engine.record_end().and_then(|()| engine.tell_last()).map_or_else(end_of, |()| end)
 }
 
 fn end_of(failure: Failure) -> End {
