@@ -85,6 +85,11 @@ fn browser() -> Option<String> {
 
 /// What the page of a model does in a browser; none, with a word, where there is no browser.
 fn asked(path: &Path, words: &[&str]) -> Option<Value> {
+    asked_for(path, words, ASK)
+}
+
+/// The same for what this script asks.
+fn asked_for(path: &Path, words: &[&str], script: &str) -> Option<Value> {
     let Some(browser) = browser() else {
         tell_skipped("no Chromium is installed; HYC_CHROMIUM names one");
         return None;
@@ -94,7 +99,7 @@ fn asked(path: &Path, words: &[&str]) -> Option<Value> {
     let page = fs::read_to_string(folder.path().join("page.html")).unwrap();
     let page = page.replacen("<head>", LISTEN, 1);
     let (before, after) = page.rsplit_once("</body>").unwrap();
-    fs::write(folder.path().join("page.html"), format!("{before}{ASK}{after}")).unwrap();
+    fs::write(folder.path().join("page.html"), format!("{before}{script}{after}")).unwrap();
     let url = format!("file://{}", folder.path().join("page.html").display());
     let profile = format!("--user-data-dir={}", folder.path().join("profile").display());
     let output = Command::new(browser)
@@ -179,4 +184,42 @@ fn a_page_shows_modes_without_states() {
     let Some(said) = asked(&path, &[]) else { return };
     assert_eq!(said["errors"], serde_json::json!([]), "{said}");
     assert!(said["moved"].as_f64() > Some(50.0) && said["charts"] == 1, "{said}");
+}
+
+/// Where the mark of the only agent is, as a share of the plane's width, at two times.
+const WHERE: &str = r##"
+<script>
+addEventListener("load", () => setTimeout(() => {
+  const $ = id => document.getElementById(id), said = { at: [], errors };
+  try {
+    $("trails").click();
+    for (const t of [10.01, 10.03]) {
+      $("time").value = t; $("time").dispatchEvent(new Event("input"));
+      const c = $("plane"), points = c.getContext("2d").getImageData(0, 0, c.width, c.height).data;
+      let sum = 0, n = 0;
+      for (let k = 0; k < points.length; k += 4) {
+        if (points[k] === 0 && points[k + 1] === 0x72 && points[k + 2] === 0xb2) { sum += (k/4) % c.width; n++; }
+      }
+      said.at.push(sum/n/c.width);
+    }
+  } catch (error) { errors.push(String(error)); }
+  document.body.innerHTML = "<pre id=verdict></pre>";
+  $("verdict").textContent = JSON.stringify(said);
+}, 100));
+</script>
+</body>"##;
+
+/// A car that goes round is at the end of the road before its event and at the begin after it, never on the way back.
+#[test]
+fn a_reset_between_two_samples_is_a_jump() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ring.hy");
+    let text = "agent Car { state x: real [m] = 0, y: real [m] = 0  flow { x' = 9.98 [m/s]  y' = 0 [m/s] }
+          wrap: when x >= 100 [m] { x := 0 } }
+        system { c = Car() }  run { until 60 }";
+    fs::write(&path, text).unwrap();
+    let Some(said) = asked_for(&path, &[], WHERE) else { return };
+    assert_eq!(said["errors"], serde_json::json!([]), "{said}");
+    let at = |k: usize| said["at"][k].as_f64().unwrap();
+    assert!(at(0) > 0.9 && at(1) < 0.1, "{said}");
 }
