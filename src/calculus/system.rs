@@ -20,8 +20,8 @@ pub use crate::calculus::relation::Relation;
 pub use crate::calculus::slot::Slot;
 pub use crate::math::draw::Distribution;
 pub use crate::model::ir::{
-    Aggregate, Block, Destination, Formula, Inside, Instance, Integrator, Population, Property, Record, Run,
-    VarRef, Watch,
+    Aggregate, Block, Destination, Formula, Inside, Instance, Integrator, Pace, Population, Property, Record,
+    Run, Thinning, VarRef, Watch,
 };
 
 mod action;

@@ -214,7 +214,10 @@ pub(super) struct PlotArguments {
     /// Where the picture goes, .svg or .png; in the current folder, with the name of the input, if not given
     #[arg(short = 'o', long = "out", value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
-    /// Draw one column against another, as paths in a plane
+    /// The event log of a trajectory, whose events are marked
+    #[arg(long, value_name = "LOG.csv")]
+    pub(super) events: Option<PathBuf>,
+    /// Draw one column, or `time`, against another, as paths in a plane
     #[arg(long, value_name = "X,Y", value_delimiter = ',')]
     pub(super) xy: Vec<String>,
     /// Draw these columns over time; without it the first six

@@ -1,16 +1,13 @@
-//! A run kept for pictures: sampled along with the run where its end is known, else in a second one like it.
+//! A run kept for pictures, sampled along with it: wherever it ends, there are neither few samples nor many.
 //!
-//! What is recorded never changes a run (rule 16), so the second one is the same; only its end is known by then.
+//! What is recorded never changes a run (rule 16).
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
-use super::watch::{Watched, watch};
+use super::watch::{AGENTS_MOST, Watched, watch};
 use crate::codegen::program::{Program, Record};
 use crate::model::{Diagram, Model};
 use crate::output::{Cast, Tables};
-use crate::picture::Recording;
-use crate::runtime::observe::{End, Outcome};
-use crate::runtime::{self, Algorithm, Limits};
+use crate::picture::{EVENTS_MAX, Recording};
+use crate::runtime::observe::Outcome;
 
 /// What is sampled, and the samples.
 pub(super) struct Film<'a> {
@@ -24,36 +21,42 @@ impl<'a> Film<'a> {
     /// Nothing sampled yet.
     pub(super) fn new(model: &Model, program: &Program, cast: &'a Cast, diagrams: &[Diagram]) -> Self {
         let (record, watched) = watch(model, program);
-        let number = if program.run.until.is_some() { program.run.records.len() } else { 0 };
-        Self { watched, recording: Recording::new(cast, diagrams, number), record: Some(record) }
+        let place = (program.run.records.len(), record.columns.len());
+        Self { watched, recording: Recording::new(cast, diagrams, place), record: Some(record) }
     }
 
-    /// Has a run sampled whose end is known: its record is the program's last.
+    /// Has the run sampled: its record is the program's last.
     pub(super) fn begin<'r>(&'r mut self, program: &mut Program, tables: &mut Tables<'r>) {
-        let Some(until) = program.run.until else { return };
-        if let Some(record) = self.record.take() {
-            program.run.records.push(Record { every: Some(self.watched.every(until)), ..record });
-            tables.also(&mut self.recording);
-        }
+        program.run.records.extend(self.record.take());
+        tables.also(&mut self.recording);
     }
 
-    /// The run is over: one that has not been sampled runs again, up to where it came.
-    pub(super) fn end(
-        &mut self,
-        algorithm: Algorithm,
-        program: &mut Program,
-        limits: &Limits,
-        outcome: &Outcome,
-        interrupt: &AtomicBool,
-    ) {
-        if let Some(record) = self.record.take() {
-            program.run.records = vec![Record { every: Some(self.watched.every(outcome.time)), ..record }];
-            if matches!(outcome.end, End::Interrupted) {
-                program.run.until = Some(outcome.time);
-                interrupt.store(false, Ordering::SeqCst);
-            }
-            runtime::simulate_by(algorithm, program, limits, interrupt, &mut self.recording);
-        }
+    /// The run is over.
+    pub(super) fn end(&mut self) {
         self.recording.close();
+    }
+
+    /// What is not shown of the run, a sentence each; empty if all is.
+    pub(super) fn left_out(&self, outcome: &Outcome) -> String {
+        let Recording { times, events, n_events, .. } = &self.recording;
+        let n_ever: u64 = outcome.stats.types.iter().map(|ty| ty.agents + ty.destroyed).sum();
+        let n_unseen = n_ever.saturating_sub(self.recording.n_sampled() as u64);
+        let mut text = Vec::new();
+        if n_unseen > 0 {
+            let apart = match times[..] {
+                [first, second, ..] => {
+                    format!(", which are {} s apart", crate::base::number_text(second - first))
+                }
+                [_] | [] => String::new(),
+            };
+            text.push(format!(
+                "{n_unseen} of {n_ever} agents are not shown: they lived between two samples{apart}, or there were more than \
+                 {AGENTS_MOST} at a time."
+            ));
+        }
+        if *n_events > events.len() as u64 {
+            text.push(format!("Of {n_events} rows of the event log the first {EVENTS_MAX} are shown."));
+        }
+        text.join(" ")
     }
 }

@@ -11,7 +11,7 @@ use super::film::Film;
 use super::input::{load, name_of, reason};
 use super::limits::Limits;
 use super::refusal::refuse_endless;
-use super::run::{INTERRUPTED, RecordAll, cast_of, compile, conclude, settings_of, simulate};
+use super::run::{RecordAll, cast_of, compile, conclude, settings_of, simulate};
 use super::terminal::{say, say_aside, tell};
 use super::{Exit, Refused};
 use crate::base::Diagnostic;
@@ -28,6 +28,12 @@ pub(super) fn plot(arguments: &PlotArguments) -> Result<Exit, Refused> {
     let input = &arguments.input;
     let from_stdin = input.as_path() == Path::new("-");
     let (traces, exit) = if input.extension().is_some_and(|ending| ending == "hy") {
+        if arguments.events.is_some() {
+            return Err(format!(
+                "`--events` is for a trajectory; the events of `{}` are there",
+                input.display()
+            ));
+        }
         match traces_of_model(arguments)? {
             (Some(traces), exit) => (traces, exit),
             (None, exit) => return Ok(exit),
@@ -39,7 +45,15 @@ pub(super) fn plot(arguments: &PlotArguments) -> Result<Exit, Refused> {
                 input.display()
             ));
         }
-        (traces_of_table(input)?, Exit::Fine)
+        let mut traces = traces_of_table(input)?;
+        if let Some(log) = &arguments.events {
+            let events = traces_of_table(log)?;
+            if events.events.is_empty() && !events.columns.is_empty() {
+                return Err(format!("`{}` is no event log", log.display()));
+            }
+            traces.mark(&events);
+        }
+        (traces, Exit::Fine)
     };
     let view = view(arguments, &traces)?;
     let out = arguments.out.clone().unwrap_or_else(|| match from_stdin {
@@ -125,7 +139,7 @@ fn traces_of_model(arguments: &PlotArguments) -> Result<(Option<Traces>, Exit), 
     }
     // What has been computed until then is drawn.
     let exit = conclude(&outcome, &sources, AssertLevel::Error);
-    film.end(algorithm, &mut program, &limits.run, &outcome, &INTERRUPTED);
+    film.end();
     let labels = film.watched.columns.iter().map(|column| match &column.unit {
         Some(unit) => format!("{}, {unit}", column.name),
         None => column.name.clone(),
@@ -144,10 +158,11 @@ fn view(arguments: &PlotArguments, traces: &Traces) -> Result<View, Refused> {
             _ => format!("there is no column `{name}`; there are {}", there.join(", ")),
         })
     };
+    let axis = |name: &String| if name == "time" { Ok(None) } else { find(name).map(Some) };
     match &arguments.xy[..] {
         [] if arguments.columns.is_empty() => Ok(View::OverTime((0..traces.columns.len()).collect())),
         [] => Ok(View::OverTime(arguments.columns.iter().map(find).collect::<Result<_, _>>()?)),
-        [across, up] => Ok(View::Plane(find(across)?, find(up)?)),
+        [across, up] => Ok(View::Plane(axis(across)?, axis(up)?)),
         _ => Err("`--xy` takes two columns: `--xy x,y`".into()),
     }
 }

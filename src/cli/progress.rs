@@ -57,7 +57,10 @@ impl ProgressLine {
 /// `t = 12.5 of 30 s, 66 agents, 1234 events, 56 k steps/s`
 fn message(progress: &Progress, seconds: f64) -> String {
     let Progress { time, until, agents, events, steps } = progress;
-    let time = if until.is_finite() { format!("{time:.4} of {until} s") } else { format!("{time:.4} s") };
+    // to a hundred-thousandth of the run
+    let decimals = if until.is_finite() && *until > 0.0 { 5.0 - until.log10().floor() } else { 4.0 };
+    let time = format!("{time:.*}", decimals.clamp(4.0, 20.0) as usize);
+    let time = if until.is_finite() { format!("{time} of {until} s") } else { format!("{time} s") };
     let rate = match *steps as f64 / seconds.max(1e-3) {
         rate if rate < 1e4 => format!("{rate:.0}"),
         rate if rate < 1e6 => format!("{:.0} k", rate / 1e3),
@@ -74,6 +77,8 @@ mod tests {
     fn the_line_says_how_far_how_many_and_how_fast() {
         let progress = Progress { time: 12.5, until: 30.0, agents: 66, events: 1234, steps: 112_000 };
         assert_eq!(message(&progress, 2.0), "t = 12.5000 of 30 s, 66 agents, 1234 events, 56 k steps/s");
+        let short = Progress { time: 0.000_412, until: 0.001, ..progress };
+        assert!(message(&short, 2.0).starts_with("t = 0.00041200 of 0.001 s, "), "{}", message(&short, 2.0));
         let endless = Progress { until: f64::INFINITY, steps: 3_000_000, ..progress };
         assert_eq!(message(&endless, 1.0), "t = 12.5000 s, 66 agents, 1234 events, 3.0 M steps/s");
     }

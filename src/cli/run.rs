@@ -18,6 +18,7 @@ use super::terminal::{complain, say, say_aside, tell};
 use super::texts::{places, texts};
 use super::warnings::Levels;
 use super::{Exit, Refused, claims};
+use crate::base::render::{Colours, render};
 use crate::base::{Diagnostic, SourceMap};
 use crate::calculus;
 use crate::codegen::program::Program;
@@ -88,16 +89,15 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     }
     let begun = Instant::now();
     let outcome = simulate(algorithm, &program, &limits.run, &mut tables, arguments.quiet)?;
-    let run_seconds = begun.elapsed().as_secs_f64();
     let flushed = tables.finish();
-    let (busiest, writing_seconds) = (tables.busiest(BUSIEST), tables.writing().as_secs_f64());
+    let run_seconds = begun.elapsed().as_secs_f64();
+    let writing_seconds = tables.writing().as_secs_f64().min(run_seconds);
+    let busiest = tables.busiest(BUSIEST);
     drop(tables);
-
-    if let Some(film) = &mut film {
-        film.end(algorithm, &mut program, &limits.run, &outcome, &INTERRUPTED);
-    }
+    let named = |&(who, steps): &(_, u64)| (cast.agent(who).into_owned(), steps);
+    let slowest: Vec<(String, u64)> = outcome.stats.slowest.iter().map(named).collect();
     let (functions, code_bytes) = program.machine_code();
-    let report = Report {
+    let mut report = Report {
         model: &name_of(&arguments.model),
         algorithm: algorithm.name(),
         engine: algorithm.form().name(),
@@ -114,20 +114,27 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
         instructions: program.cost.instructions,
         code_bytes,
         busiest: &busiest,
+        slowest: &slowest,
         compile_parts: &compile_parts,
         writing_seconds,
         compile_seconds,
         run_seconds,
+        page_seconds: None,
         files: sinks.names(),
     };
     tell(&sources, &outcome.warnings);
     tell(&sources, &claims::diagnostics(&outcome.false_asserts, &cast));
     tell(&sources, &claims::of_properties(&outcome.verdicts));
-    if let Some(sink) = whole.statistics {
-        write_whole(sink, &statistics(&report))?;
-    }
-    let summary = summary(&report);
-    if let (Some(sink), Some(Film { watched, recording, .. })) = (whole.page, &film) {
+    if let (Some(sink), Some(film)) = (whole.page, &mut film) {
+        let begun = Instant::now();
+        film.end();
+        let Film { watched, recording, .. } = &*film;
+        let error = match &outcome.end {
+            End::Error(diagnostic) => {
+                Some(render(&sources, std::slice::from_ref(&**diagnostic), Colours::None))
+            }
+            End::Until | End::Stop { .. } | End::Interrupted | End::Output(_) => None,
+        };
         let scene = Scene {
             title: &name_of(Path::new(arguments.model.file_name().unwrap_or_default())),
             texts: &texts(&model, &sources),
@@ -135,12 +142,19 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
             diagrams: &diagrams,
             recording,
             columns: &watched.columns,
-            plane: watched.plane,
+            plane: watched.plane(recording),
             landmarks: &watched.landmarks,
-            summary: &summary,
+            summary: &summary(&report),
+            error: error.as_deref(),
+            left_out: &film.left_out(&outcome),
         };
         write_whole(sink, &page(&scene))?;
+        report.page_seconds = Some(begun.elapsed().as_secs_f64());
     }
+    if let Some(sink) = whole.statistics {
+        write_whole(sink, &statistics(&report))?;
+    }
+    let summary = summary(&report);
     let is_left = matches!(&outcome.end, End::Output(error) if is_closed(error));
     if !arguments.quiet && !is_left {
         if sinks.on_stdout() { say_aside(&summary) } else { say(&summary)? }

@@ -11,8 +11,8 @@ pub use crate::calculus::system::{
     ActionList, ActionStep, AgentSystem, Aggregate, Atom, Birth, ClaimKind, ClaimSystem, Column, Condition,
     Destination, Distribution, Entry, Flow, Fold, Formula, Frame, Guard, Initials, Inside, Integrator,
     InteractionSystem, Jumps, Keys, Kink, KinkKind, Layout, LetSystem, LetValue, LinkUpdate, ModeSystem,
-    Near, PairTransition, Population, Property, Quantified, Range, Record, Relation, Run, Sender, SetSystem,
-    Slot, Source, Term, TransitionSystem, Trigger, VarRef, Watch, Whither,
+    Near, Pace, PairTransition, Population, Property, Quantified, Range, Record, Relation, Run, Sender,
+    SetSystem, Slot, Source, Term, Thinning, TransitionSystem, Trigger, VarRef, Watch, Whither,
 };
 use crate::codegen::kernel::{Kernel, StepKernel};
 use crate::codegen::later::Later;

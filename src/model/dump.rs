@@ -7,8 +7,8 @@ use std::fmt::Write;
 use super::formula::{Formulas, Names, number_text};
 use super::ir::{
     Action, AgentType, Claim, Create, ExprId, Given, Instance, Integrator, Interaction, LinkCase, LinkTarget,
-    Machinery, Mode, ModeId, Model, ParamValue, Population, Record, Run, Transition, Trigger, Type, TypeId,
-    VarRef, Variable,
+    Machinery, Mode, ModeId, Model, Pace, ParamValue, Population, Record, Run, Transition, Trigger, Type,
+    TypeId, VarRef, Variable,
 };
 use super::machinery::Named;
 
@@ -411,7 +411,11 @@ impl<'m> Writer<'m> {
     }
 
     fn record(&mut self, record: &Record) {
-        let every = record.every.map_or("step and event".to_string(), |every| format!("{every} s"));
+        let every = match record.pace {
+            Pace::EveryStep => "step and event".to_string(),
+            Pace::Every(every) => format!("{every} s"),
+            Pace::Thinning(thinning) => format!("{} s, thinned", thinning.first),
+        };
         let file =
             record.file.as_ref().map_or("the command line's file".to_string(), |file| format!("\"{file}\""));
         let shown = record.agents.iter().take(2 * AGENTS_SHOWN).map(|&agent| self.agent_name(agent));

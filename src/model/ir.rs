@@ -14,6 +14,7 @@ pub use crate::model::integrator::Integrator;
 pub use crate::model::kinds::{Inside, ParamValue};
 use crate::model::limits::Limits;
 pub use crate::model::machinery::Machinery;
+pub use crate::model::pace::{Pace, Thinning};
 
 mod action;
 
@@ -579,8 +580,8 @@ pub struct Record {
     pub columns: Vec<String>,
     /// For each agent type (by number), for each column, the variable; none: an empty cell.
     pub variables: Vec<Vec<Option<VarRef>>>,
-    /// Distance of samples, s; none: every accepted step and both sides of every event.
-    pub every: Option<f64>,
+    /// When it has rows.
+    pub pace: Pace,
     /// The file; none: the command line's.
     pub file: Option<String>,
     /// Where it stands.

@@ -170,7 +170,8 @@ impl<'a> Context<'a> {
     /// The value at a knot and powers of the distance from it.
     fn polynomial(&mut self, pieces: &Pieces, knot: usize, powers: Vec<f64>) -> Value {
         let span = pieces.span;
-        let [value, place] = [pieces.values[knot], pieces.at[knot]].map(|number| self.unchecked(number, span));
+        let [value, place] =
+            [pieces.values[knot], pieces.at[knot]].map(|number| self.unchecked(number, span));
         let away = self.apply(Op::Sub, [pieces.argument, place.id], Ty::Real, span);
         // From the highest power down.
         let mut powers = powers.into_iter().rev();

@@ -10,6 +10,7 @@ pub mod machinery;
 pub mod limits;
 mod applied;
 mod kinds;
+mod pace;
 mod collective;
 pub mod ir;
 mod access;

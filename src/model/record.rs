@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::context::{Context, Global, GlobalKind, Home, Scope};
 use super::error::{LimitError, RunError, SystemError};
-use super::ir::{Record, TypeId, VarRef};
+use super::ir::{Pace, Record, TypeId, VarRef};
 use super::suggest::closest;
 use super::types::Ty;
 use crate::base::Span;
@@ -162,13 +162,7 @@ impl<'a> Context<'a> {
     }
 
     /// The record that a choice comes to; none, and a diagnostic, if that has too many cells.
-    pub fn chosen(
-        &mut self,
-        choice: Choice,
-        every: Option<f64>,
-        file: Option<String>,
-        span: Span,
-    ) -> Option<Record> {
+    pub fn chosen(&mut self, choice: Choice, pace: Pace, file: Option<String>, span: Span) -> Option<Record> {
         let Choice { types: born, blocks, mut agents, variables: wanted, .. } = choice;
         let mut columns: Vec<String> = Vec::new();
         let mut column_of: FxHashMap<&str, usize> = FxHashMap::default();
@@ -206,6 +200,6 @@ impl<'a> Context<'a> {
             variables
         };
         let variables = self.model.types.iter().zip(&wanted).map(of_type).collect();
-        Some(Record { agents, born, columns, variables, every, file, span })
+        Some(Record { agents, born, columns, variables, pace, file, span })
     }
 }

@@ -6,7 +6,7 @@ use super::Settings;
 use super::context::{Context, Home, Scope};
 use super::dimension::Dimension;
 use super::error::{FileError, LimitError, RunError};
-use super::ir::Record;
+use super::ir::{Pace, Record};
 use super::machinery::Named;
 use super::suggest::closest;
 use super::types::{Slot, Ty};
@@ -325,7 +325,8 @@ impl<'a> Context<'a> {
             }
         }
         self.file_name(file);
-        let record = self.chosen(choice, every, Some(file.value.clone()), span);
+        let pace = every.map_or(Pace::EveryStep, Pace::Every);
+        let record = self.chosen(choice, pace, Some(file.value.clone()), span);
         self.model.run.records.extend(record);
     }
 
@@ -334,6 +335,6 @@ impl<'a> Context<'a> {
         for ty in self.model.visible_types() {
             self.choose_type(ty, &mut choice);
         }
-        self.chosen(choice, None, None, Span::default())
+        self.chosen(choice, Pace::EveryStep, None, Span::default())
     }
 }

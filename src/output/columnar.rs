@@ -116,11 +116,11 @@ impl Columnar {
         }
     }
 
-    /// The row ends; a batch that is full is written.
-    pub(super) fn end_row(&mut self) -> io::Result<()> {
+    /// The row ends; whether the batch is full, and to be written.
+    pub(super) fn end_row(&mut self) -> bool {
         self.next = 0;
         self.rows += 1;
-        if self.rows >= BATCH { self.write_batch() } else { Ok(()) }
+        self.rows >= BATCH
     }
 
     /// Writes the rows so far, as far as the form allows without the end.
@@ -153,7 +153,8 @@ impl Columnar {
         &mut self.cells[self.next - 1]
     }
 
-    fn write_batch(&mut self) -> io::Result<()> {
+    /// Writes the rows that have come together.
+    pub(super) fn write_batch(&mut self) -> io::Result<()> {
         if std::mem::take(&mut self.rows) == 0 {
             return Ok(());
         }

@@ -59,11 +59,11 @@ impl CommaSeparated {
         }
     }
 
-    /// The row ends; whole rows are handed on.
-    pub(super) fn end_row(&mut self) -> io::Result<()> {
+    /// The row ends; whether so many have come together that they are to be handed on.
+    pub(super) fn end_row(&mut self) -> bool {
         self.bytes.push(b'\n');
         self.row = self.bytes.len();
-        if self.row >= ROOM { self.hand_on() } else { Ok(()) }
+        self.row >= ROOM
     }
 
     pub(super) fn flush(&mut self) -> io::Result<()> {
@@ -71,7 +71,8 @@ impl CommaSeparated {
         self.writer.flush()
     }
 
-    fn hand_on(&mut self) -> io::Result<()> {
+    /// Hands on the rows that are whole.
+    pub(super) fn hand_on(&mut self) -> io::Result<()> {
         self.writer.write_all(&self.bytes[..self.row])?;
         self.bytes.drain(..self.row);
         self.row = 0;

@@ -1,6 +1,7 @@
 //! The event log: a row for each transition that fires, in the order of execution.
 
 use std::io;
+use std::time::Duration;
 
 use super::cast::Cast;
 use super::columns::{Column, Kind};
@@ -43,6 +44,11 @@ impl EventLog {
 
     pub(super) fn flush(&mut self) -> io::Result<()> {
         self.table.flush()
+    }
+
+    /// How long it took to hand on rows.
+    pub(super) fn handing(&self) -> Duration {
+        self.table.handing()
     }
 
     pub(super) fn finish(&mut self) -> io::Result<()> {

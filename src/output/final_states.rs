@@ -1,6 +1,7 @@
 //! The state of every agent at the end: a row for each, in the order of their numbers.
 
 use std::io;
+use std::time::Duration;
 
 use super::cast::{Cast, TypeColumns};
 use super::columns::{Column, Kind};
@@ -48,6 +49,11 @@ impl FinalStates {
             write_cell(&mut self.table, cast, cell);
         }
         self.table.end_row()
+    }
+
+    /// How long it took to hand on rows.
+    pub(super) fn handing(&self) -> Duration {
+        self.table.handing()
     }
 
     pub(super) fn finish(&mut self) -> io::Result<()> {

@@ -38,6 +38,8 @@ pub struct Report<'a> {
     pub code_bytes: usize,
     /// Who had most events, and how many.
     pub busiest: &'a [(String, u64)],
+    /// Who took most steps, and how many.
+    pub slowest: &'a [(String, u64)],
     /// The parts of compiling, s.
     pub compile_parts: &'a [(&'a str, f64)],
     /// The part of the run that writing took, s.
@@ -46,6 +48,8 @@ pub struct Report<'a> {
     pub compile_seconds: f64,
     /// From program to end, s.
     pub run_seconds: f64,
+    /// What making the page took, s; none where there is none.
+    pub page_seconds: Option<f64>,
     /// The files that were written.
     pub files: &'a [String],
 }

@@ -56,8 +56,10 @@ pub fn statistics(report: &Report<'_>) -> String {
     });
     value["properties"] = outcome.verdicts.iter().map(property).collect();
     value["busiest_agents"] = counts(report.busiest);
+    value["slowest_agents"] = counts(report.slowest);
     value["compile_parts"] = parts(report.compile_parts);
     value["writing_seconds"] = json!(report.writing_seconds);
+    value["page_seconds"] = json!(report.page_seconds);
     let mut text = serde_json::to_string_pretty(&value).expect("every key is a string");
     text.push('\n');
     text

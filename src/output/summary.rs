@@ -8,8 +8,10 @@ use crate::runtime::observe::End;
 
 /// How many transitions are listed, those that fired most often first.
 const TRANSITIONS_SHOWN: usize = 8;
-/// How many agents are listed, those with most events first.
+/// How many agents are listed, those with most events or steps first.
 const AGENTS_SHOWN: usize = 3;
+/// An agent that takes so many times as many steps as the mean is slow.
+const SLOW: u64 = 2;
 /// The longest bar, in characters.
 const BAR: u64 = 24;
 
@@ -84,14 +86,24 @@ fn fired(text: &mut String, report: &Report<'_>) {
     }
 }
 
-/// Who has most events, where there are several agents.
+/// Who has most events and who took most steps, where there are several agents.
 fn busiest(text: &mut String, report: &Report<'_>) {
-    if report.busiest.is_empty() || report.cast.agents.len() < 2 {
+    if report.cast.agents.len() < 2 {
         return;
     }
-    let shown = report.busiest.iter().take(AGENTS_SHOWN);
-    let shown = shown.map(|(name, count)| format!("{name} ({})", counted(*count, "event")));
-    line(text, format_args!("  busiest    {}", shown.collect::<Vec<_>>().join(", ")));
+    // Where all take about as many steps, nobody is slow.
+    let types = &report.outcome.stats.types;
+    let n_ever: u64 = types.iter().map(|ty| ty.agents + ty.destroyed).sum();
+    let is_slow = |&(_, steps): &(String, u64)| steps * n_ever >= SLOW * report.outcome.stats.steps;
+    let slowest = if report.slowest.first().is_some_and(is_slow) { report.slowest } else { &[] };
+    for (head, most, noun) in [("busiest", report.busiest, "event"), ("slowest", slowest, "step")] {
+        let shown = most.iter().take(AGENTS_SHOWN);
+        let shown = shown.map(|(name, count)| format!("{name} ({})", counted(*count, noun)));
+        let shown = shown.collect::<Vec<_>>().join(", ");
+        if !shown.is_empty() {
+            line(text, format_args!("  {head}    {shown}"));
+        }
+    }
 }
 
 fn guards(text: &mut String, report: &Report<'_>) {
@@ -136,7 +148,9 @@ fn time(text: &mut String, report: &Report<'_>) {
         _ => String::new(),
     };
     let (compiled, ran) = (duration(report.compile_seconds), duration(report.run_seconds));
-    line(text, format_args!("  time       compiled in {compiled}{parts}, ran in {ran}{writing}"));
+    let page =
+        report.page_seconds.map(|seconds| format!(", page in {}", duration(seconds))).unwrap_or_default();
+    line(text, format_args!("  time       compiled in {compiled}{parts}, ran in {ran}{writing}{page}"));
 }
 
 fn counted(count: u64, noun: &str) -> String {

@@ -1,6 +1,7 @@
 //! One table, written row by row, in the form that the name of its file asks for.
 
 use std::io::{self, Write};
+use std::time::{Duration, Instant};
 
 use super::columnar::{Columnar, Layout};
 use super::columns::Column;
@@ -27,6 +28,8 @@ pub fn unwritten(name: &str, error: &io::Error) -> io::Error {
 pub(super) struct Table {
     name: String,
     form: Form,
+    /// How long it took to hand on rows.
+    handing: Duration,
 }
 
 enum Form {
@@ -45,7 +48,7 @@ impl Table {
             }
         };
         let form = form.map_err(|error| unwritten(&name, &error))?;
-        Ok(Self { name, form })
+        Ok(Self { name, form, handing: Duration::ZERO })
     }
 
     /// A cell without a value.
@@ -93,31 +96,42 @@ impl Table {
         }
     }
 
-    /// Ends the row.
+    /// Ends the row; those that have come together are handed on, if they are enough.
     #[inline]
     pub(super) fn end_row(&mut self) -> io::Result<()> {
-        let done = match &mut self.form {
+        let is_full = match &mut self.form {
             Form::Text(table) => table.end_row(),
             Form::Columns(table) => table.end_row(),
         };
-        done.map_err(|error| unwritten(&self.name, &error))
+        if is_full { self.timed(CommaSeparated::hand_on, Columnar::write_batch) } else { Ok(()) }
     }
 
     /// Hands on the rows so far, as far as the form allows before the end.
     pub(super) fn flush(&mut self) -> io::Result<()> {
-        let done = match &mut self.form {
-            Form::Text(table) => table.flush(),
-            Form::Columns(table) => table.flush(),
-        };
-        done.map_err(|error| unwritten(&self.name, &error))
+        self.timed(CommaSeparated::flush, Columnar::flush)
     }
 
     /// Hands on all rows, and the end of the table.
     pub(super) fn finish(&mut self) -> io::Result<()> {
+        self.timed(CommaSeparated::flush, Columnar::finish)
+    }
+
+    /// How long it took to hand on rows.
+    pub(super) fn handing(&self) -> Duration {
+        self.handing
+    }
+
+    fn timed(
+        &mut self,
+        text: impl FnOnce(&mut CommaSeparated) -> io::Result<()>,
+        columns: impl FnOnce(&mut Columnar) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let begun = Instant::now();
         let done = match &mut self.form {
-            Form::Text(table) => table.flush(),
-            Form::Columns(table) => table.finish(),
+            Form::Text(table) => text(table),
+            Form::Columns(table) => columns(table),
         };
+        self.handing += begun.elapsed();
         done.map_err(|error| unwritten(&self.name, &error))
     }
 }

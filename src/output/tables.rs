@@ -16,8 +16,8 @@ use crate::runtime::observe::{Event, Explanation, Last, Observer, Progress, Row,
 
 /// How long what has been told may wait before it is in the files.
 const WAIT: Duration = Duration::from_secs(1);
-/// So many rows are timed, then one of as many.
-const TIMED: u64 = 64;
+/// So many rows are timed, then one of as many; no power of two, as batches and numbers of agents often are.
+const TIMED: u64 = 61;
 
 /// The observer that writes tables. Begin with [`Tables::new`], add what is wanted, end with [`Tables::finish`].
 pub struct Tables<'a> {
@@ -29,9 +29,9 @@ pub struct Tables<'a> {
     on_progress: Box<dyn FnMut(&Progress) + 'a>,
     also: Option<&'a mut dyn Observer>,
     flushed: Instant,
-    /// Rows so far, and the time that writing them took.
+    /// Rows so far, and the time that making them took, as those say that were timed.
     rows: u64,
-    writing: Duration,
+    making: Duration,
     /// Events of each agent.
     events: BTreeMap<Who, u64>,
 }
@@ -49,7 +49,7 @@ impl<'a> Tables<'a> {
             also: None,
             flushed: Instant::now(),
             rows: 0,
-            writing: Duration::ZERO,
+            making: Duration::ZERO,
             events: BTreeMap::new(),
         }
     }
@@ -89,13 +89,11 @@ impl<'a> Tables<'a> {
 
     /// Hands on all that has been written, and the ends of the tables. Tries every table, and returns the first failure.
     pub fn finish(&mut self) -> io::Result<()> {
-        let begun = Instant::now();
         let mut results = Vec::new();
         results.extend(self.event_log.as_mut().map(EventLog::finish));
         results.extend(self.trajectories.iter_mut().map(Trajectory::finish));
         results.extend(self.final_states.as_mut().map(FinalStates::finish));
         results.extend(self.explanations.as_mut().map(Explanations::flush));
-        self.writing += begun.elapsed();
         results.into_iter().collect()
     }
 
@@ -107,9 +105,17 @@ impl<'a> Tables<'a> {
         counts.into_iter().map(|(agent, count)| (self.cast.agent(agent).into_owned(), count)).collect()
     }
 
-    /// About how long writing took: of many rows, some are timed.
+    /// How long writing took: about, as to the making of rows, of which some are timed; to the point, as to handing them on.
     pub fn writing(&self) -> Duration {
-        self.writing
+        self.making + self.handing()
+    }
+
+    /// How long it took to hand on the rows that had come together.
+    fn handing(&self) -> Duration {
+        let of_log = self.event_log.iter().map(EventLog::handing);
+        let of_trajectories = self.trajectories.iter().map(Trajectory::handing);
+        let of_final_states = self.final_states.iter().map(FinalStates::handing);
+        of_log.chain(of_trajectories).chain(of_final_states).sum()
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -125,9 +131,10 @@ impl<'a> Tables<'a> {
         if !each && !self.rows.is_multiple_of(TIMED) {
             return write(self);
         }
-        let begun = Instant::now();
+        let (begun, handing) = (Instant::now(), self.handing());
         let written = write(self);
-        self.writing += begun.elapsed() * if each { 1 } else { TIMED as u32 };
+        let making = begun.elapsed().saturating_sub(self.handing() - handing);
+        self.making += making * if each { 1 } else { TIMED as u32 };
         written
     }
 }
@@ -142,27 +149,31 @@ impl Observer for Tables<'_> {
         for agent in agents.into_iter().flatten() {
             *self.events.entry(agent).or_default() += 1;
         }
-        self.timed(|tables| match &mut tables.event_log {
-            Some(log) => log.event(tables.cast, event),
-            None => Ok(()),
-        })
+        if self.event_log.is_none() {
+            return Ok(());
+        }
+        self.timed(|tables| tables.event_log.as_mut().map_or(Ok(()), |log| log.event(tables.cast, event)))
     }
 
     fn sample(&mut self, record: usize, row: &Row<'_>) -> io::Result<()> {
         if let Some(also) = &mut self.also {
             also.sample(record, row)?;
         }
-        self.timed(|tables| match tables.trajectories.get_mut(record) {
-            Some(trajectory) => trajectory.sample(tables.cast, row),
-            None => Ok(()),
-        })
+        if record >= self.trajectories.len() {
+            return Ok(());
+        }
+        self.timed(|tables| tables.trajectories[record].sample(tables.cast, row))
+    }
+
+    fn thinned(&mut self, record: usize) -> io::Result<()> {
+        self.also.as_mut().map_or(Ok(()), |also| also.thinned(record))
     }
 
     fn last(&mut self, last: &Last<'_>) -> io::Result<()> {
-        match &mut self.final_states {
-            Some(table) => table.last(self.cast, last),
+        self.timed(|tables| match &mut tables.final_states {
+            Some(table) => table.last(tables.cast, last),
             None => Ok(()),
-        }
+        })
     }
 
     fn progress(&mut self, progress: &Progress) -> io::Result<()> {

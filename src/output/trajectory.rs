@@ -1,6 +1,7 @@
 //! A trajectory: the recorded variables of some agents over time.
 
 use std::io;
+use std::time::Duration;
 
 use super::cast::Cast;
 use super::columns::{Column, Kind};
@@ -33,6 +34,11 @@ impl Trajectory {
 
     pub(super) fn flush(&mut self) -> io::Result<()> {
         self.table.flush()
+    }
+
+    /// How long it took to hand on rows.
+    pub(super) fn handing(&self) -> Duration {
+        self.table.handing()
     }
 
     pub(super) fn finish(&mut self) -> io::Result<()> {

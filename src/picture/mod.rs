@@ -11,11 +11,15 @@ mod highlight;
 mod recording;
 mod page;
 mod traces;
+mod bitmap;
+mod lines;
+mod sheet;
+mod legend;
 mod plot;
 
 pub use modes_dot::modes_dot;
 pub use modes_svg::{Theme, modes_svg};
 pub use page::{Landmarks, Lines, Scene, Shown, Text, Varies, page};
 pub use plot::{Form, View, plot, ready_font};
-pub use recording::{Happened, Recording, Track};
+pub use recording::{EVENTS_MAX, Happened, Recording, Track};
 pub use traces::{Trace, Traces};

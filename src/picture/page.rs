@@ -1,7 +1,7 @@
 //! The page of a run: one HTML file that holds everything it needs, and asks no network for anything.
 //!
-//! Samples lie in it as base64 of 32-bit numbers, column by column, agent by agent. Styles and scripts are those of `page/`;
-//! charts are drawn by uPlot, which lies in `page/vendor/` with its licence.
+//! Samples lie in it as base64 of 32-bit numbers, column by column, agent by agent, each from its first sample to its last. Styles and
+//! scripts are those of `page/`; charts are drawn by uPlot, which lies in `page/vendor/` with its licence.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,13 @@ use crate::model::Diagram;
 
 const TEMPLATE: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/page.css");
-const SCRIPT: &str = include_str!("page/page.js");
+const SCRIPT: [&str; 5] = [
+    include_str!("page/run.js"),
+    include_str!("page/plane.js"),
+    include_str!("page/charts.js"),
+    include_str!("page/events.js"),
+    include_str!("page/page.js"),
+];
 const UPLOT_SCRIPT: &str = include_str!("page/vendor/uPlot.iife.min.js");
 const UPLOT_STYLE: &str = include_str!("page/vendor/uPlot.min.css");
 
@@ -41,6 +47,10 @@ pub struct Scene<'a> {
     pub landmarks: &'a Landmarks,
     /// How it ended and what it took, as text.
     pub summary: &'a str,
+    /// What stopped it, if an error did.
+    pub error: Option<&'a str>,
+    /// What is not shown of it, in words.
+    pub left_out: &'a str,
 }
 
 /// What a model says of the plane: columns are those of the record, numbers are in their units.
@@ -106,7 +116,7 @@ pub fn page(scene: &Scene<'_>) -> String {
             "CSS" => html += STYLE,
             "UPLOT_CSS" => html += UPLOT_STYLE,
             "UPLOT_JS" => html += UPLOT_SCRIPT,
-            "JS" => html += SCRIPT,
+            "JS" => html += &format!("\"use strict\";\n(() => {{\n{}}})();\n", SCRIPT.concat()),
             "MODES" => html += &modes_svg(scene.diagrams, Theme::Page),
             "SOURCE" => html += &texts(scene.texts),
             "DATA" => html += &data,
@@ -159,13 +169,17 @@ fn data(scene: &Scene<'_>) -> Value {
         json!([event.time, event.transition, event.agent, number(event.other), number(from), number(to)])
     });
     let modes = recording.tracks.iter().flat_map(|track| &track.modes).flat_map(|mode| mode.to_le_bytes());
+    let lives = recording.tracks.iter().flat_map(|track| [track.first as u32, track.modes.len() as u32]);
     json!({
         "ending": ending.split_once(": ").map_or(ending, |(_, ending)| ending),
         "summary": summary,
+        "error": scene.error,
+        "leftOut": scene.left_out,
         "agents": recording.tracks.iter().map(|track| &track.name).collect::<Vec<_>>(),
         "times": recording.times,
+        "lives": base64(lives.flat_map(u32::to_le_bytes)),
         "columns": columns.collect::<Vec<_>>(),
-        "modes": STANDARD.encode(modes.collect::<Vec<u8>>()),
+        "modes": base64(modes),
         "modeNames": recording.modes,
         "modeColours": (0..recording.modes.len()).map(|mode| hex(colour(mode))).collect::<Vec<_>>(),
         "palette": COLOURS.map(hex),
@@ -182,7 +196,13 @@ fn data(scene: &Scene<'_>) -> Value {
 }
 
 fn column(recording: &Recording<'_>, k: usize, shown: &Shown) -> Value {
-    let values = recording.tracks.iter().flat_map(|track| track.values.get(k).into_iter().flatten());
+    let values = || recording.tracks.iter().flat_map(|track| &track.values[k]).copied();
+    let finite = values().filter(|value| value.is_finite());
+    let (low, high) =
+        finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    // what differs little for its size is told from the middle on, so that 32 bits are enough
+    let is_narrow = high - low < NARROW * low.abs().max(high.abs());
+    let middle = if is_narrow { low + (high - low) / 2.0 } else { 0.0 };
     let label = match &shown.unit {
         Some(unit) => format!("{}, {unit}", shown.name),
         None => shown.name.clone(),
@@ -195,6 +215,14 @@ fn column(recording: &Recording<'_>, k: usize, shown: &Shown) -> Value {
         "length": length,
         "chart": shown.varies == Varies::InTime,
         "whole": shown.is_whole,
-        "values": STANDARD.encode(values.flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>()),
+        "middle": middle,
+        "values": base64(values().flat_map(|value| ((value - middle) as f32).to_le_bytes())),
     })
+}
+
+/// A column whose values differ by less than this share of their size is narrow.
+const NARROW: f64 = 0.01;
+
+fn base64(bytes: impl Iterator<Item = u8>) -> String {
+    STANDARD.encode(bytes.collect::<Vec<u8>>())
 }

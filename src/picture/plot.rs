@@ -8,29 +8,32 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::palette::{Colour, colour};
+use super::bitmap::Bitmap;
+use super::legend::{legend, legend_height};
+use super::lines::{Resolution, stretches};
+use super::palette::colour;
+use super::sheet::{
+    FAINT, Failed, INK, LEFT, LINE, MARGIN, NAMED_MAX, WIDTH, below_rows, clipped, line_style, rgb, shortened,
+};
 use super::traces::{Trace, Traces};
 
-/// Points across and down.
-const WIDTH: u32 = 900;
 /// The height of a panel of variables, of a row of modes, of a plane.
 const PANEL: u32 = 210;
 const ROW: u32 = 18;
 const PLANE: u32 = 640;
 /// So many variables have a panel.
 const PANELS_MAX: usize = 6;
-/// So many agents have a colour and a name of their own.
-const NAMED_MAX: usize = 8;
-/// So many agents have a row of modes; of more, only events are marked.
-const ROWS_MAX: usize = 24;
-
+/// Of more points only those are drawn that can be told apart.
+const POINTS_MAX: usize = 20_000;
+/// So many events are marked in a plane.
+const CROSSES_MAX: usize = 2000;
 /// What is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub enum View {
     /// Variables, by number, over time.
     OverTime(Vec<usize>),
-    /// One variable against another.
-    Plane(usize, usize),
+    /// One variable against another; none: the time.
+    Plane(Option<usize>, Option<usize>),
 }
 
 /// The form of a picture.
@@ -41,9 +44,6 @@ pub enum Form {
     /// Points.
     Png,
 }
-
-/// A picture could not be drawn: why.
-type Failed = Box<dyn std::error::Error + Send + Sync>;
 
 /// Draws; the bytes are those of a file.
 ///
@@ -62,7 +62,7 @@ pub fn plot(traces: &Traces, view: &View, title: &str, form: Form) -> Result<Vec
         }
         Form::Png => {
             let mut pixels = vec![0; size.0 as usize * size.1 as usize * 3];
-            let area = BitMapBackend::with_buffer(&mut pixels, size).into_drawing_area();
+            let area = Bitmap::new(&mut pixels, size).into_drawing_area();
             draw(area, traces, view, title).and_then(|()| encoded(&pixels, size))
         }
     };
@@ -84,25 +84,16 @@ fn height(traces: &Traces, view: &View) -> u32 {
     let below = if below_rows(traces) > 0 { below_rows(traces) as u32 * ROW + 60 } else { 0 };
     match view {
         View::Plane(..) => PLANE + 40,
-        View::OverTime(columns) if columns.is_empty() => 70 + traces.agents.len().clamp(4, 60) as u32 * ROW,
+        View::OverTime(columns) if columns.is_empty() => rows_height(traces) + legend_height(traces),
         View::OverTime(columns) => {
-            36 + columns.len().min(PANELS_MAX) as u32 * PANEL + below + 26 * legend_rows(traces)
+            36 + columns.len().min(PANELS_MAX) as u32 * PANEL + below + legend_height(traces)
         }
     }
 }
 
-/// How many rows of modes and events there are.
-fn below_rows(traces: &Traces) -> usize {
-    let modes = traces.agents.iter().any(|trace| trace.modes.iter().any(Option::is_some));
-    if (modes || !traces.events.is_empty()) && traces.agents.len() <= ROWS_MAX {
-        traces.agents.len()
-    } else {
-        0
-    }
-}
-
-fn legend_rows(traces: &Traces) -> u32 {
-    u32::from((2..=NAMED_MAX).contains(&traces.agents.len())) + u32::from(traces.modes.len() > 1)
+/// The height of a picture that has rows of modes and events only.
+fn rows_height(traces: &Traces) -> u32 {
+    70 + traces.agents.len().clamp(4, 60) as u32 * ROW
 }
 
 fn encoded(pixels: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, Failed> {
@@ -129,7 +120,11 @@ where
     let (_, mut rest) = area.split_vertically(36);
     match view {
         View::Plane(across, up) => plane(&rest, traces, *across, *up)?,
-        View::OverTime(columns) if columns.is_empty() => rows(&rest, traces, &span(traces))?,
+        View::OverTime(columns) if columns.is_empty() => {
+            let (panel, below) = rest.split_vertically(rows_height(traces) - 36);
+            rows(&panel, traces, &span(traces))?;
+            legend(&below, traces)?;
+        }
         View::OverTime(columns) => {
             let span = span(traces);
             for (k, &column) in columns.iter().take(PANELS_MAX).enumerate() {
@@ -148,24 +143,6 @@ where
     }
     area.present()?;
     Ok(())
-}
-
-const INK: RGBColor = RGBColor(0x1b, 0x1f, 0x24);
-const FAINT: RGBColor = RGBColor(0x59, 0x63, 0x6e);
-const LINE: RGBColor = RGBColor(0xe3, 0xe7, 0xeb);
-const LEFT: u32 = 100;
-const MARGIN: u32 = 16;
-
-fn rgb([red, green, blue]: Colour) -> RGBColor {
-    RGBColor(red, green, blue)
-}
-
-/// The colour and width of an agent's line; of many agents all look alike.
-fn line_style(traces: &Traces, agent: usize) -> ShapeStyle {
-    match traces.agents.len() {
-        n if n <= NAMED_MAX => rgb(colour(agent)).stroke_width(2),
-        n => rgb(colour(0)).mix((12.0 / n as f64).clamp(0.15, 0.7)).stroke_width(1),
-    }
 }
 
 /// From the first time to the last.
@@ -187,39 +164,6 @@ fn spread(values: impl Iterator<Item = f64>, margin: f64) -> Range<f64> {
     low - margin..high + margin
 }
 
-/// Stretches of a line without gaps; of very many points those that can be seen.
-fn stretches(across: &[f64], up: &[f64]) -> Vec<Vec<(f64, f64)>> {
-    let mut stretches: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
-    for (&x, &y) in across.iter().zip(up) {
-        match stretches.last_mut() {
-            Some(stretch) if x.is_finite() && y.is_finite() => stretch.push((x, y)),
-            Some(_) | None => stretches.push(Vec::new()),
-        }
-    }
-    stretches.retain(|stretch| !stretch.is_empty());
-    stretches.into_iter().map(thinned).collect()
-}
-
-/// Of each few neighbours the first, the lowest and the highest, in their order.
-fn thinned(stretch: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
-    let few = stretch.len() / (2 * WIDTH as usize);
-    if few < 4 {
-        return stretch;
-    }
-    let mut kept = Vec::new();
-    for points in stretch.chunks(few) {
-        let by = |pick: fn(f64, f64) -> bool| {
-            (1..points.len()).fold(0, |best, k| if pick(points[k].1, points[best].1) { k } else { best })
-        };
-        let mut places = [0, by(|one, other| one < other), by(|one, other| one > other)];
-        places.sort_unstable();
-        kept.extend(places.map(|k| points[k]));
-    }
-    kept.dedup();
-    kept.extend(stretch.last());
-    kept
-}
-
 fn over_time<B: DrawingBackend>(
     panel: &DrawingArea<B, Shift>,
     traces: &Traces,
@@ -238,15 +182,29 @@ where
         .x_label_area_size(if last { 40 } else { 22 })
         .margin_left(MARGIN)
         .y_label_area_size(LEFT - MARGIN)
-        .build_cartesian_2d(span.clone(), range)?;
+        .build_cartesian_2d(span.clone(), range.clone())?;
+    let resolution = resolution(traces, &chart, span, &range);
     mesh(&mut chart, if last { "time, s" } else { "" }, &traces.columns[column])?;
     for (agent, trace) in traces.agents.iter().enumerate() {
         let style = line_style(traces, agent);
-        for stretch in stretches(&trace.times, &trace.values[column]) {
+        for stretch in stretches(&trace.times, &trace.values[column], resolution) {
             chart.draw_series(LineSeries::new(stretch, style))?;
         }
     }
     Ok(())
+}
+
+/// How finely lines are drawn in a chart of these ranges: of a few agents each point is kept.
+fn resolution<B: DrawingBackend>(
+    traces: &Traces,
+    chart: &Chart<'_, B>,
+    across: &Range<f64>,
+    up: &Range<f64>,
+) -> Resolution {
+    let n_points: usize = traces.agents.iter().map(|trace| trace.times.len()).sum();
+    let (wide, high) = chart.plotting_area().dim_in_pixel();
+    let each = [(wide, across), (high, up)].map(|(n, range)| f64::from(n) / (range.end - range.start));
+    (n_points > POINTS_MAX).then_some(each)
 }
 
 type Chart<'a, B> = ChartContext<
@@ -271,8 +229,8 @@ where
         .y_labels(6)
         .x_label_formatter(&|x| short(*x))
         .y_label_formatter(&|y| short(*y))
-        .x_desc(across)
-        .y_desc(up)
+        .x_desc(shortened(across, 40, 12))
+        .y_desc(shortened(up, 16, 8))
         .draw()?;
     Ok(())
 }
@@ -336,10 +294,6 @@ where
     Ok(())
 }
 
-fn clipped(name: &str) -> String {
-    if name.chars().count() <= 12 { name.into() } else { name.chars().take(11).chain(['\u{2026}']).collect() }
-}
-
 /// The stretches of time in one mode.
 fn bands(trace: &Trace) -> Vec<(f64, f64, usize)> {
     let mut bands: Vec<(f64, f64, usize)> = Vec::new();
@@ -357,17 +311,19 @@ fn bands(trace: &Trace) -> Vec<(f64, f64, usize)> {
 fn plane<B: DrawingBackend>(
     panel: &DrawingArea<B, Shift>,
     traces: &Traces,
-    across: usize,
-    up: usize,
+    across: Option<usize>,
+    up: Option<usize>,
 ) -> Result<(), Failed>
 where
     B::ErrorType: 'static,
 {
-    let of = |column: usize| traces.agents.iter().flat_map(move |trace| &trace.values[column]).copied();
+    let of = |column: Option<usize>| traces.agents.iter().flat_map(move |trace| trace.along(column)).copied();
+    let [label_across, label_up] =
+        [across, up].map(|column| column.map_or("time, s", |column| traces.columns[column].as_str()));
     let (mut xs, mut ys) = (spread(of(across), 0.05), spread(of(up), 0.05));
     let named = traces.agents.len() <= NAMED_MAX && traces.agents.len() > 1;
     let wide = f64::from(WIDTH - LEFT - 18 - if named { 130 } else { 0 }) / f64::from(PLANE - 60);
-    if is_length(&traces.columns[across]) && is_length(&traces.columns[up]) {
+    if is_length(label_across) && is_length(label_up) {
         // a circle is drawn as one
         let (w, h) = (xs.end - xs.start, ys.end - ys.start);
         let (dx, dy) = (((h * wide - w) / 2.0).max(0.0), ((w / wide - h) / 2.0).max(0.0));
@@ -379,14 +335,15 @@ where
         .x_label_area_size(44)
         .margin_left(MARGIN)
         .y_label_area_size(LEFT - MARGIN)
-        .build_cartesian_2d(xs.clone(), ys)?;
-    mesh(&mut chart, &traces.columns[across], &traces.columns[up])?;
+        .build_cartesian_2d(xs.clone(), ys.clone())?;
+    mesh(&mut chart, label_across, label_up)?;
+    let resolution = resolution(traces, &chart, &xs, &ys);
     for (agent, trace) in traces.agents.iter().enumerate() {
         let style = line_style(traces, agent);
-        for stretch in stretches(&trace.values[across], &trace.values[up]) {
+        for stretch in stretches(trace.along(across), trace.along(up), resolution) {
             chart.draw_series(LineSeries::new(stretch, style))?;
         }
-        let place = |k: usize| (trace.values[across][k], trace.values[up][k]);
+        let place = |k: usize| (trace.along(across)[k], trace.along(up)[k]);
         let ends = (0..trace.times.len()).filter(|&k| place(k).0.is_finite() && place(k).1.is_finite());
         let ends: Vec<usize> = ends.collect();
         if let (Some(&first), Some(&last)) = (ends.first(), ends.last()) {
@@ -395,10 +352,11 @@ where
             chart.draw_series([Circle::new(place(last), 4, style.filled())])?;
         }
     }
-    for &(time, agent) in &traces.events {
+    let crosses = if traces.events.len() > CROSSES_MAX { &[][..] } else { &traces.events[..] };
+    for &(time, agent) in crosses {
         let trace = &traces.agents[agent];
         let k = trace.times.partition_point(|&t| t <= time).saturating_sub(1);
-        let (Some(&x), Some(&y)) = (trace.values[across].get(k), trace.values[up].get(k)) else { continue };
+        let (Some(&x), Some(&y)) = (trace.along(across).get(k), trace.along(up).get(k)) else { continue };
         if x.is_finite() && y.is_finite() {
             chart.draw_series([Cross::new((x, y), 4, INK.stroke_width(1))])?;
         }
@@ -418,31 +376,4 @@ where
 fn is_length(name: &str) -> bool {
     let name = name.split(',').next().unwrap_or(name);
     ["x", "y", "z"].contains(&name)
-}
-
-/// Who has which line, which mode which band.
-fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>, traces: &Traces) -> Result<(), Failed>
-where
-    B::ErrorType: 'static,
-{
-    let style = ("sans-serif", 13).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
-    let mut y = 12;
-    if (2..=NAMED_MAX).contains(&traces.agents.len()) {
-        let mut x = LEFT as i32;
-        for (agent, trace) in traces.agents.iter().enumerate() {
-            area.draw(&PathElement::new([(x, y), (x + 22, y)], line_style(traces, agent)))?;
-            area.draw(&Text::new(clipped(&trace.name), (x + 28, y), style.clone()))?;
-            x += 44 + 8 * clipped(&trace.name).chars().count() as i32;
-        }
-        y += 26;
-    }
-    if traces.modes.len() > 1 {
-        let mut x = LEFT as i32;
-        for (mode, name) in traces.modes.iter().enumerate().take(10) {
-            area.draw(&Rectangle::new([(x, y - 6), (x + 14, y + 6)], rgb(colour(mode)).mix(0.55).filled()))?;
-            area.draw(&Text::new(name.clone(), (x + 20, y), style.clone()))?;
-            x += 40 + 8 * name.chars().count() as i32;
-        }
-    }
-    Ok(())
 }

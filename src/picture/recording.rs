@@ -1,28 +1,34 @@
 //! A run kept in memory for pictures: what some record samples, and the events.
+//!
+//! An agent has samples while it lives. The record is thinned out as the run goes on, so that their number is bounded, wherever the run ends
+//! and however many agents come and go.
 
-use std::collections::BTreeMap;
 use std::io;
+
+use rustc_hash::FxHashMap;
 
 use crate::model::Diagram;
 use crate::output::Cast;
 use crate::runtime::observe::{Cell, Event, Observer, Row, Who};
 
 /// Of more events only the first so many are kept.
-const EVENTS_MAX: usize = 50_000;
-/// Agents with higher numbers are not shown.
-const TRACKS_MAX: usize = 20_000;
+pub const EVENTS_MAX: usize = 50_000;
 
 /// The observer.
 pub struct Recording<'a> {
     cast: &'a Cast,
     /// The number of the record that is kept; its samples are at the same times for all agents.
     record: usize,
-    numbers: BTreeMap<(usize, String), u16>,
+    n_columns: usize,
+    /// For each type, the number of each of its modes by its path.
+    numbers: Vec<FxHashMap<String, u16>>,
+    /// The place of each agent's track.
+    places: FxHashMap<usize, usize>,
     /// All modes that agents can be in, by number, as `type: path`.
     pub modes: Vec<String>,
     /// s.
     pub times: Vec<f64>,
-    /// By number.
+    /// Those of agents that were sampled, or that have had an event; closed, in order of their numbers.
     pub tracks: Vec<Track>,
     /// The first of them.
     pub events: Vec<Happened>,
@@ -35,13 +41,17 @@ pub struct Recording<'a> {
 }
 
 /// What is known of one agent.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Track {
+    who: Who,
+    has_event: bool,
     /// Its name.
     pub name: String,
-    /// For each column, for each time, the value; NaN if there is none.
-    pub values: Vec<Vec<f32>>,
-    /// For each time, the mode's number.
+    /// The number of its first sample's time; it has one at each from there on, until it dies.
+    pub first: usize,
+    /// For each column, for each of its samples, the value; NaN if there is none.
+    pub values: Vec<Vec<f64>>,
+    /// For each of its samples the mode's number.
     pub modes: Vec<u16>,
 }
 
@@ -52,7 +62,7 @@ pub struct Happened {
     pub time: f64,
     /// The number of its transition's label.
     pub transition: usize,
-    /// The number of the agent.
+    /// The agent: its number, and from [`Recording::close`] on that of its track.
     pub agent: usize,
     /// The other participant of an interaction.
     pub other: Option<usize>,
@@ -61,13 +71,13 @@ pub struct Happened {
 }
 
 impl<'a> Recording<'a> {
-    /// Nothing yet. Modes have the numbers of the leaves of the diagrams, which are those of their colours.
-    pub fn new(cast: &'a Cast, diagrams: &[Diagram], record: usize) -> Self {
-        let mut numbers = BTreeMap::new();
+    /// Nothing yet of this record, which has so many columns. Modes have the numbers of the leaves of the diagrams, which are those of their colours.
+    pub fn new(cast: &'a Cast, diagrams: &[Diagram], (record, n_columns): (usize, usize)) -> Self {
+        let mut numbers = vec![FxHashMap::default(); diagrams.len()];
         let mut modes = Vec::new();
-        for (ty, diagram) in diagrams.iter().enumerate() {
+        for (numbers, diagram) in numbers.iter_mut().zip(diagrams) {
             for leaf in diagram.boxes.iter().filter(|shown| shown.children.is_empty()) {
-                numbers.insert((ty, leaf.path.clone()), u16::try_from(modes.len()).unwrap_or(u16::MAX));
+                numbers.insert(leaf.path.clone(), u16::try_from(modes.len()).unwrap_or(u16::MAX));
                 modes.push(match (diagrams.len(), leaf.path.as_str()) {
                     (_, "") => diagram.name.clone(),
                     (1, path) => path.into(),
@@ -75,40 +85,93 @@ impl<'a> Recording<'a> {
                 });
             }
         }
-        let (times, tracks, events, transitions, paths) = Default::default();
-        Self { cast, record, numbers, modes, times, tracks, events, n_events: 0, transitions, paths }
+        let (places, times, tracks, events, transitions, paths) = Default::default();
+        Self {
+            cast,
+            record,
+            n_columns,
+            numbers,
+            places,
+            modes,
+            times,
+            tracks,
+            events,
+            n_events: 0,
+            transitions,
+            paths,
+        }
     }
 
-    /// Gives every track a value for every time.
+    /// Puts the tracks in order, and has the events refer to them.
     pub fn close(&mut self) {
-        let n = self.times.len();
-        for track in &mut self.tracks {
-            track.fill(n);
+        self.tracks.sort_by_key(|track| track.who);
+        self.find_places();
+        for event in &mut self.events {
+            event.agent = self.places[&event.agent];
+            event.other = event.other.map(|other| self.places[&other]);
         }
     }
 
-    /// The track of an agent; those of agents with lower numbers that have not been met have no values yet.
-    fn track(&mut self, agent: Who, n_columns: usize) -> &mut Track {
-        while self.tracks.len() <= agent.number {
-            let who = Who { number: self.tracks.len(), ..agent };
-            let name = self.cast.agent(who).into_owned();
-            let values = vec![Vec::new(); n_columns];
-            self.tracks.push(Track { name, values, modes: Vec::new() });
+    fn find_places(&mut self) {
+        let numbers = self.tracks.iter().enumerate();
+        self.places = numbers.map(|(place, track)| (track.who.number, place)).collect();
+    }
+
+    /// How many agents have been sampled.
+    pub fn n_sampled(&self) -> usize {
+        self.tracks.iter().filter(|track| !track.modes.is_empty()).count()
+    }
+
+    /// Whether some agent has both of these at some time; time is there always.
+    pub fn shows(&self, pair: [Option<usize>; 2]) -> bool {
+        self.tracks.iter().any(|track| {
+            let is_there = |column: Option<usize>, k: usize| {
+                column.is_none_or(|column| track.values[column][k].is_finite())
+            };
+            (0..track.modes.len()).any(|k| is_there(pair[0], k) && is_there(pair[1], k))
+        })
+    }
+
+    /// Whether agents have at least two different values in a column, and at most so many.
+    pub fn has_few(&self, column: usize, most: usize) -> bool {
+        let mut found: Vec<f64> = Vec::new();
+        for &value in self.tracks.iter().flat_map(|track| &track.values[column]) {
+            if value.is_finite() && !found.contains(&value) {
+                found.push(value);
+                if found.len() > most {
+                    return false;
+                }
+            }
         }
-        let track = &mut self.tracks[agent.number];
-        if track.modes.is_empty() {
-            track.name = self.cast.agent(agent).into_owned();
-        }
-        track
+        found.len() >= 2
+    }
+
+    /// An agent's track.
+    fn track(&mut self, who: Who) -> &mut Track {
+        let place = *self.places.entry(who.number).or_insert_with(|| {
+            let (name, values) = (self.cast.agent(who).into_owned(), vec![Vec::new(); self.n_columns]);
+            self.tracks.push(Track { who, name, has_event: false, first: 0, values, modes: Vec::new() });
+            self.tracks.len() - 1
+        });
+        &mut self.tracks[place]
+    }
+
+    /// The number of a mode by its path. Where regions have one each, that of the first counts.
+    fn mode(&self, ty: usize, path: &str) -> u16 {
+        let first = path.split('|').next().unwrap_or(path);
+        self.numbers.get(ty).and_then(|numbers| numbers.get(first)).copied().unwrap_or(u16::MAX)
     }
 }
 
 impl Track {
-    fn fill(&mut self, n: usize) {
+    /// Gives up the samples with odd numbers.
+    fn thin(&mut self) {
+        let from = self.first % 2;
         for values in &mut self.values {
-            values.resize(n, f32::NAN);
+            *values = values.iter().copied().skip(from).step_by(2).collect();
         }
-        self.modes.resize(n, u16::MAX);
+        self.modes = self.modes.iter().copied().skip(from).step_by(2).collect();
+        self.first = self.first.div_ceil(2);
     }
 }
 
@@ -120,6 +183,9 @@ impl Observer for Recording<'_> {
             let modes = event
                 .modes
                 .map(|(from, to)| (number_in(&mut self.paths, from), number_in(&mut self.paths, to)));
+            for who in [Some(event.agent), event.other].into_iter().flatten() {
+                self.track(who).has_event = true;
+            }
             let (time, agent) = (event.time, event.agent.number);
             let other = event.other.map(|other| other.number);
             self.events.push(Happened { time, transition, agent, other, modes });
@@ -128,25 +194,38 @@ impl Observer for Recording<'_> {
     }
 
     fn sample(&mut self, record: usize, row: &Row<'_>) -> io::Result<()> {
-        if record != self.record || row.agent.number >= TRACKS_MAX {
+        if record != self.record {
             return Ok(());
         }
         if self.times.last() != Some(&row.time) {
             self.times.push(row.time);
         }
-        let n = self.times.len();
-        let ty = row.agent.ty;
-        let mode = self.numbers.get(&(ty, row.mode.to_string())).copied().unwrap_or(u16::MAX);
-        let track = self.track(row.agent, row.cells.len());
-        track.fill(n - 1);
+        let mode = self.mode(row.agent.ty, row.mode);
+        let number = self.times.len() - 1;
+        let track = self.track(row.agent);
+        if track.modes.is_empty() {
+            track.first = number;
+        }
         track.modes.push(mode);
         for (values, cell) in track.values.iter_mut().zip(row.cells) {
             values.push(match *cell {
-                Cell::Number(value) => value as f32,
-                Cell::Bool(value) => f32::from(u8::from(value)),
-                Cell::Empty | Cell::Agent(_) => f32::NAN,
+                Cell::Number(value) => value,
+                Cell::Bool(value) => f64::from(u8::from(value)),
+                Cell::Empty | Cell::Agent(_) => f64::NAN,
             });
         }
+        Ok(())
+    }
+
+    fn thinned(&mut self, record: usize) -> io::Result<()> {
+        if record != self.record {
+            return Ok(());
+        }
+        self.times = self.times.iter().copied().step_by(2).collect();
+        self.tracks.iter_mut().for_each(Track::thin);
+        // Of those who lived between two samples that are left nothing is to be shown.
+        self.tracks.retain(|track| track.has_event || !track.modes.is_empty());
+        self.find_places();
         Ok(())
     }
 }

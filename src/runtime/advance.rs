@@ -8,6 +8,7 @@ use rustc_hash::FxHashSet;
 
 use crate::codegen::trace::Blame;
 use crate::runtime::ahead::Way;
+use crate::runtime::counts::Counts;
 use crate::runtime::detect::CurveRows;
 use crate::runtime::flow::{GroupFlow, Witness};
 use crate::runtime::groups::{Group, KinkHit};
@@ -19,27 +20,6 @@ use crate::runtime::solve::integrate::{Integrator, Stuck};
 use crate::runtime::solve::method::{Flow as _, Stretch};
 use crate::runtime::solve::switch::{Regime, Switch};
 use crate::runtime::solve::{MethodName, Methods};
-
-/// Counts of steps.
-#[derive(Clone, Debug, Default)]
-pub struct Counts {
-    /// Accepted, one for each member.
-    pub steps: u64,
-    /// Accepted, for each agent type.
-    pub steps_of_type: Vec<u64>,
-    /// Those of them that the method for stiff flows took where there is a choice.
-    pub steps_stiff: u64,
-    /// Rejected, one for each member.
-    pub rejected: u64,
-    /// Right-hand sides, one for each member.
-    pub rhs_evaluations: u64,
-    /// Jacobians, one for each member.
-    pub jacobians: u64,
-    /// Arithmetic operations: of the right-hand sides as their tapes have them, and of the method.
-    pub operations: u64,
-    /// Beginnings of an integration: at t = 0 and after every restart, one for each member.
-    pub starts: u64,
-}
 
 /// What became of an attempt to advance a group.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,7 +77,8 @@ impl Stepper {
         time_end: f64,
         limits: &Limits,
     ) -> Self {
-        let counts = Counts { steps_of_type: vec![0; agents.program.types.len()], ..Counts::default() };
+        let steps_of_type = vec![0; agents.program.types.len()];
+        let counts = Counts { steps_of_type, steps_of: vec![0; agents.len()], ..Counts::default() };
         Self {
             integrator: Integrator::new(methods, accuracy, time_end),
             methods,
@@ -122,6 +103,9 @@ impl Stepper {
 
     /// Another agent has the place of one that is dead.
     pub fn forget(&mut self, place: usize) {
+        let steps_of = &mut self.counts.steps_of;
+        steps_of.resize(steps_of.len().max(place + 1), 0);
+        steps_of[place] = 0;
         if !self.stiff.is_empty() {
             self.stiff.retain(|&(agent, _)| agent != place);
         }
@@ -330,6 +314,7 @@ impl Stepper {
             self.counts.steps += n_new;
             self.counts.steps_stiff += u64::from(is_stiff);
             self.counts.steps_of_type[agent.ty] += n_new;
+            self.counts.steps_of[member] += n_new;
         }
         self.integrator.keep(stretch, &mut group.integration);
         group.clock = stretch.end;

@@ -282,7 +282,15 @@ impl<'p> Jumping<'_, 'p> {
         e: f64,
     ) -> Result<Option<Flip>, GivenUp> {
         let closed = atom.relation == Relation::NonPositive;
-        let known = Known { truth, closed, slack: 0.0, settled: true, grazed: true, joins: false, reach: 2.0 * ulp(e) };
+        let known = Known {
+            truth,
+            closed,
+            slack: 0.0,
+            settled: true,
+            grazed: true,
+            joins: false,
+            reach: 2.0 * ulp(e),
+        };
         let (mut from, pieces_max) = (s, self.pieces_max);
         let mut curve = self.curve(atom, own);
         loop {

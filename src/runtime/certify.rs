@@ -114,8 +114,7 @@ impl Engine<'_, '_> {
         match search {
             Search::None => {
                 // It may not have left its boundary yet.
-                let stays =
-                    known.settled && atom.smooth && self.is_on_boundary((atom, &slots, &folds), to);
+                let stays = known.settled && atom.smooth && self.is_on_boundary((atom, &slots, &folds), to);
                 self.certified(index, to);
                 self.guards.atoms[index].settled = stays;
             }
@@ -160,11 +159,7 @@ impl Engine<'_, '_> {
     }
 
     /// Whether g is within rounding of zero at a time.
-    fn is_on_boundary(
-        &mut self,
-        (atom, slots, folds): (&Atom, &Slots, &[Folded<'_>]),
-        time: f64,
-    ) -> bool {
+    fn is_on_boundary(&mut self, (atom, slots, folds): (&Atom, &Slots, &[Folded<'_>]), time: f64) -> bool {
         let mut curve = AtomCurve::new(&self.agents, atom, slots, folds, &mut self.curves);
         let (value, bound) = (curve.jet(time)[0], curve.jet_range(time, time)[0]);
         value.abs() <= width(bound)

@@ -40,6 +40,8 @@ pub struct Cold<'p> {
     places: Vec<Place>,
     /// By agent, up to where the steps have been counted that it takes when it runs ahead no more, s.
     counted: Vec<f64>,
+    /// By agent, the steps that it took in the herds that it has left.
+    left: Vec<u64>,
 }
 
 impl<'p> Cold<'p> {
@@ -62,7 +64,7 @@ impl<'p> Cold<'p> {
             (0..program.types.len()).map(|ty| modes(ty).map(|mode| herd_of(ty, mode)).collect()).collect();
         let n_places = if herds.is_empty() { 0 } else { n_agents };
         let counted = vec![f64::NEG_INFINITY; n_places];
-        Self { herds, of_mode, places: vec![NOWHERE; n_places], counted }
+        Self { herds, of_mode, places: vec![NOWHERE; n_places], counted, left: vec![0; n_places] }
     }
 
     /// Whether anybody can be cold.
@@ -256,14 +258,23 @@ impl<'p> Cold<'p> {
         if place == self.places.len() {
             self.places.push(NOWHERE);
             self.counted.push(f64::NEG_INFINITY);
+            self.left.push(0);
         }
         self.places[place] = NOWHERE;
         self.counted[place] = f64::NEG_INFINITY;
+        self.left[place] = 0;
     }
 
     /// Takes an agent out that is not cold.
     pub fn dismiss(&mut self, agent: usize) {
         self.leave(agent);
+    }
+
+    /// How many steps an agent has taken in herds.
+    pub fn steps_of(&self, agent: usize) -> u64 {
+        let Some(&Place { herd, place, .. }) = self.places.get(agent) else { return 0 };
+        let here = if herd == NONE { 0 } else { self.herds[herd as usize].steps_of(place as usize) };
+        here + self.left[agent]
     }
 
     /// Takes an agent out of its herd, if it is in one.
@@ -272,6 +283,7 @@ impl<'p> Cold<'p> {
         if herd == NONE {
             return;
         }
+        self.left[agent] += self.herds[herd as usize].steps_of(place as usize);
         if let Some(moved) = self.herds[herd as usize].remove(place as usize) {
             self.places[moved].place = place;
         }

@@ -27,6 +27,7 @@ use crate::runtime::present::{Depth, Present};
 use crate::runtime::reach::Reaches;
 use crate::runtime::record::Recorder;
 use crate::runtime::repetition::Repetitions;
+use crate::runtime::slowest::Slowest;
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::{MethodName, Methods};
 use crate::runtime::verdicts::Monitors;
@@ -153,6 +154,7 @@ pub struct Engine<'p, 'o> {
     pub mail: Mail,
     /// Makes rows of trajectories.
     pub recorder: Recorder<'p>,
+    pub slowest: Slowest,
     /// Watches for Zeno behaviour and chattering.
     pub repetitions: Repetitions,
     /// Who is told.
@@ -238,6 +240,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             window_end: f64::INFINITY,
             has_thawed: false,
             recorder: Recorder::new(program, time_end),
+            slowest: Slowest::default(),
             repetitions: Repetitions::new(limits),
             groups: Groups::new(coupling),
             points: Vec::new(),
@@ -266,6 +269,11 @@ impl<'p, 'o> Engine<'p, 'o> {
     /// Whether the user wants the run to end.
     pub fn interrupted(&self) -> bool {
         self.interrupt.load(atomic::Ordering::Relaxed)
+    }
+
+    /// Writes the last rows of the records that have one at the end, wherever that is.
+    pub fn record_end(&mut self) -> Result<(), Failure> {
+        self.recorder.end(&self.agents, &mut self.present, self.observer)
     }
 
     /// Tells the observer the state of every agent at the present time (rule 12).
@@ -310,8 +318,15 @@ impl<'p, 'o> Engine<'p, 'o> {
         Ok(())
     }
 
+    /// Takes note of how many steps an agent has taken, which takes no more.
+    pub fn note_steps(&mut self, agent: usize) {
+        let steps = self.stepper.counts.steps_of[agent] + self.agents.cold.steps_of(agent);
+        self.slowest.note(self.agents.who(agent), steps);
+    }
+
     /// What the run came to.
-    pub fn outcome(self, end: End) -> Outcome {
+    pub fn outcome(mut self, end: End) -> Outcome {
+        self.agents.living().into_iter().for_each(|agent| self.note_steps(agent));
         let counts = &self.stepper.counts;
         let hidden = self.program.watcher();
         let types = self.program.types.iter().enumerate().filter(|(ty, _)| Some(*ty) != hidden);
@@ -357,6 +372,7 @@ impl<'p, 'o> Engine<'p, 'o> {
                 + self.reaches.operations,
             misses: None,
             types: types.collect(),
+            slowest: self.slowest.told(),
             transitions: labels.collect(),
             methods: methods.collect(),
         };

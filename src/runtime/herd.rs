@@ -74,6 +74,11 @@ impl<'p> Herd<'p> {
         self.agents.len() - 1
     }
 
+    /// How many steps an agent has taken here.
+    pub fn steps_of(&self, place: usize) -> u64 {
+        self.looks[place].steps
+    }
+
     /// Takes an agent out; the one that had the last place, if there is another, has its place now.
     pub fn remove(&mut self, place: usize) -> Option<usize> {
         let (last, width) = (self.agents.len() - 1, self.width);

@@ -70,11 +70,13 @@ mod flow;
 mod failure;
 mod fate;
 mod kinks;
+mod counts;
 mod advance;
 mod stiffness;
 mod repetition;
 mod mail;
 mod record;
+mod slowest;
 mod neighbours;
 mod robustness;
 mod signal;
@@ -190,7 +192,7 @@ fn last_words(engine: &mut Engine<'_, '_>, end: Result<End, Failure>) -> End {
         engine.watch_now();
     }
     let end = end.unwrap_or_else(end_of);
-    engine.tell_last().map_or_else(end_of, |()| end)
+    engine.record_end().and_then(|()| engine.tell_last()).map_or_else(end_of, |()| end)
 }
 
 fn end_of(failure: Failure) -> End {

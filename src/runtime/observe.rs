@@ -33,6 +33,10 @@ pub trait Observer {
     fn sample(&mut self, _record: usize, _row: &Row<'_>) -> io::Result<()> {
         Ok(())
     }
+    /// Of the samples of this record, which is thinned out, those with odd numbers (counted from 0) have been given up.
+    fn thinned(&mut self, _record: usize) -> io::Result<()> {
+        Ok(())
+    }
     /// The state of an agent at the end; agents come in order of their numbers.
     fn last(&mut self, _last: &Last<'_>) -> io::Result<()> {
         Ok(())
@@ -358,6 +362,8 @@ pub struct Stats {
     pub misses: Option<Misses>,
     /// Per agent type: name, agents, steps, events.
     pub types: Vec<TypeStats>,
+    /// The agents that took most accepted steps, and how many.
+    pub slowest: Vec<(Who, u64)>,
     /// Per transition: label, firings.
     pub transitions: Vec<(String, u64)>,
     /// Per method of integration: its name, accepted steps.

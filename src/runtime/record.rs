@@ -1,10 +1,11 @@
-//! Rows of trajectories (rule 16): samples at k d, or every accepted step and both sides of every event.
+//! Rows of trajectories (rule 16): samples at k d, every accepted step and both sides of every event, or samples that are thinned
+//! out as the run goes on.
 
 use std::collections::BTreeSet;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::codegen::program::{Layout, LetValue, Program, Record, VarRef};
+use crate::codegen::program::{Layout, LetValue, Pace, Program, Record, Thinning, VarRef};
 use crate::math::Scale;
 use crate::runtime::failure::Failure;
 use crate::runtime::observe::{Cell, Observer, Row, Who};
@@ -32,8 +33,13 @@ enum Repeat {
 
 struct Recording<'p> {
     record: &'p Record,
-    /// Samples written so far.
+    /// The distance of samples, s; infinite where every step is recorded.
+    every: f64,
+    /// Samples written so far, and not given up.
     n_samples: u64,
+    /// The rows of each of them, and the time of the last one; where they are thinned out.
+    kept: Vec<usize>,
+    last_sample: f64,
     /// The places of its agents that are alive, in the order of their numbers.
     roster: Vec<usize>,
     /// The time of the last row of each of them, by place; for records of every step.
@@ -45,7 +51,14 @@ impl<'p> Recorder<'p> {
     pub fn new(program: &'p Program, time_end: f64) -> Self {
         let records = program.run.records.iter().map(|record| Recording {
             record,
+            every: match record.pace {
+                Pace::EveryStep => f64::INFINITY,
+                Pace::Every(every) => every,
+                Pace::Thinning(thinning) => thinning.first,
+            },
             n_samples: 0,
+            kept: Vec::new(),
+            last_sample: f64::NEG_INFINITY,
             roster: record.agents.clone(),
             last: FxHashMap::default(),
         });
@@ -76,8 +89,10 @@ impl<'p> Recorder<'p> {
 
     /// k d, or the end where k d misses it by rounding.
     fn next_of(&self, recording: &Recording<'_>) -> f64 {
-        let Some(every) = recording.record.every else { return f64::INFINITY };
-        let time = scheduled(recording.n_samples as f64 * every, self.time_end);
+        if recording.record.pace == Pace::EveryStep {
+            return f64::INFINITY;
+        }
+        let time = scheduled(recording.n_samples as f64 * recording.every, self.time_end);
         if time > self.time_end { f64::INFINITY } else { time }
     }
 
@@ -90,17 +105,57 @@ impl<'p> Recorder<'p> {
         observer: &mut dyn Observer,
     ) -> Result<(), Failure> {
         present.go(time);
-        let micro = if self.last_instant.0 == time { self.last_instant.1 } else { 0 };
         for number in 0..self.records.len() {
             if self.next_of(&self.records[number]) != time {
                 continue;
             }
             self.records[number].n_samples += 1;
-            present.survey(agents, &self.records[number].roster);
-            for k in 0..self.records[number].roster.len() {
-                let agent = self.records[number].roster[k];
-                self.row(agents, present, number, agent, micro, observer)?;
+            self.sample_of(agents, present, number, observer)?;
+            while self.records[number].is_full(time) {
+                self.records[number].thin();
+                observer.thinned(number)?;
             }
+        }
+        Ok(())
+    }
+
+    /// The run is over: writes the last sample of the records that are thinned out.
+    pub fn end(
+        &mut self,
+        agents: &Agents<'_>,
+        present: &mut Present,
+        observer: &mut dyn Observer,
+    ) -> Result<(), Failure> {
+        for number in 0..self.records.len() {
+            let recording = &self.records[number];
+            if matches!(recording.record.pace, Pace::Thinning(_)) && recording.last_sample < present.time {
+                self.sample_of(agents, present, number, observer)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes a row for each agent of a record at the present time.
+    fn sample_of(
+        &mut self,
+        agents: &Agents<'_>,
+        present: &mut Present,
+        number: usize,
+        observer: &mut dyn Observer,
+    ) -> Result<(), Failure> {
+        let time = present.time;
+        let micro = if self.last_instant.0 == time { self.last_instant.1 } else { 0 };
+        let recording = &mut self.records[number];
+        let mut n_rows = recording.roster.len();
+        if let Pace::Thinning(thinning) = recording.record.pace {
+            n_rows = n_rows.min(thinning.agents_most);
+            recording.kept.push(n_rows);
+            recording.last_sample = time;
+        }
+        present.survey(agents, &recording.roster[..n_rows]);
+        for k in 0..n_rows {
+            let agent = self.records[number].roster[k];
+            self.row(agents, present, number, agent, micro, observer)?;
         }
         Ok(())
     }
@@ -162,12 +217,12 @@ impl<'p> Recorder<'p> {
 
     /// Whether any record asks for every step.
     pub fn wants_steps(&self) -> bool {
-        self.records.iter().any(|recording| recording.record.every.is_none())
+        self.records.iter().any(|recording| recording.record.pace == Pace::EveryStep)
     }
 
     /// The agents of which every step is recorded, rising.
     pub fn recorded_steps(&self) -> Vec<usize> {
-        let every_step = self.records.iter().filter(|recording| recording.record.every.is_none());
+        let every_step = self.records.iter().filter(|recording| recording.record.pace == Pace::EveryStep);
         let mut agents: Vec<usize> = every_step.flat_map(|recording| &recording.roster).copied().collect();
         agents.sort_unstable();
         agents.dedup();
@@ -185,7 +240,7 @@ impl<'p> Recorder<'p> {
     ) -> Result<(), Failure> {
         for number in 0..self.records.len() {
             let recording = &mut self.records[number];
-            if recording.record.every.is_some() {
+            if recording.record.pace != Pace::EveryStep {
                 continue;
             }
             if !recording.roster.contains(&agent)
@@ -260,5 +315,42 @@ impl<'p> Recorder<'p> {
                 }
             }
         }
+    }
+}
+
+/// Before [`Thinning::coarse_until`] this share of samples and rows is enough.
+const COARSE: usize = 8;
+
+impl Recording<'_> {
+    /// Whether it has more samples or rows than it may have at this time.
+    fn is_full(&self, time: f64) -> bool {
+        let Pace::Thinning(Thinning {
+            samples_most,
+            rows_enough,
+            samples_least,
+            rows_most,
+            coarse_until,
+            ..
+        }) = self.record.pace
+        else {
+            return false;
+        };
+        let share = if time < coarse_until { COARSE } else { 1 };
+        let (n_samples, n_rows) = (self.kept.len().saturating_sub(1), self.kept.iter().sum::<usize>());
+        n_samples > 1
+            && (n_samples > samples_most / share
+                || n_rows > rows_enough / share && n_samples > samples_least / share
+                || n_rows > rows_most / share)
+    }
+
+    /// Gives up every second sample, those with odd numbers.
+    fn thin(&mut self) {
+        let mut number = 0;
+        self.kept.retain(|_| {
+            number += 1;
+            number % 2 == 1
+        });
+        self.n_samples = self.n_samples.div_ceil(2);
+        self.every *= 2.0;
     }
 }

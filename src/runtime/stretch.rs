@@ -26,10 +26,12 @@ pub struct Looks {
     left: u32,
     /// So many from one look to the next.
     patience: u32,
+    /// Steps that it has taken in its herd.
+    pub steps: u64,
 }
 
 /// No steps have been taken.
-pub const NO_LOOKS: Looks = Looks { left: 256, patience: 256 };
+pub const NO_LOOKS: Looks = Looks { left: 256, patience: 256, steps: 0 };
 /// The patience doubles from look to look up to this.
 const PATIENCE_MAX: u32 = 2048;
 
@@ -147,7 +149,9 @@ impl Stretch<'_, '_> {
             lanes.taken[lane] += 1;
             if good {
                 // What a track takes again has been counted.
-                advanced.steps += u64::from(lanes.t.0[lane] > self.clocks[place]);
+                let is_new = u64::from(lanes.t.0[lane] > self.clocks[place]);
+                advanced.steps += is_new;
+                self.looks[place].steps += is_new;
                 if lanes.is_tracked[lane] {
                     self.track(lane, lanes);
                 }
@@ -228,7 +232,9 @@ impl Stretch<'_, '_> {
                 advanced.refused.push(self.first + place);
                 break;
             }
-            advanced.steps += u64::from(leap.end > self.clocks[place]);
+            let is_new = u64::from(leap.end > self.clocks[place]);
+            advanced.steps += is_new;
+            self.looks[place].steps += is_new;
             if lanes.is_tracked[lane] {
                 let ratio = self.leaps.accuracy.error_norm(&rows.errors, &x[..n], &x_new[..n]);
                 let (x_end, terms) = (x_new[..n].iter().copied(), rows.terms.iter().copied());

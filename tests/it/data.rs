@@ -12,6 +12,8 @@ use arrow_ipc::reader::{FileReader, StreamReader};
 use arrow_schema::DataType;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 
+use crate::skipped::tell_skipped;
+
 /// Every kind of column: numbers, truth values, agents, cells that are empty for some.
 const MIXED: &str = "\
 agent Ball(h: real [m], next: Ball) {
@@ -190,7 +192,7 @@ fn the_snippets_for_python_run_and_agree() {
     let python = std::env::var("HYC_PYTHON").unwrap_or("python3".into());
     let there = Command::new(&python).args(["-c", "import pandas, polars, pyarrow"]).output();
     if !there.is_ok_and(|output| output.status.success()) {
-        eprintln!("skipped: `{python}` has no pandas, polars and pyarrow; HYC_PYTHON names another");
+        tell_skipped(&format!("`{python}` has no pandas, polars and pyarrow; HYC_PYTHON names another"));
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -199,6 +201,19 @@ fn the_snippets_for_python_run_and_agree() {
         let model = ball.replace("to \"balls.csv\"", "to \"balls.FORM\" events to \"bounces.FORM\"");
         assert!(model.contains("bounces"));
         run(folder.path(), &model.replace("FORM", form), &[]);
+    }
+    // a stream of two batches, cut within the second one's head, within its body, and before both
+    let model = ball.replace("to \"balls.csv\"", "to \"balls.arrows\"").replace("every 0.01", "every 0.0001");
+    let cut = folder.path().join("cut");
+    fs::create_dir(&cut).unwrap();
+    run(&cut, &model, &[]);
+    let whole = fs::read(cut.join("balls.arrows")).unwrap();
+    let last = whole.len() * 32_768 / 50_002;
+    let killed = snippets.iter().find(|snippet| snippet.contains("not whole")).unwrap();
+    for length in [whole.len() - 1, whole.len() - 1000, last + 5000, last + 600, last / 2, 2000] {
+        fs::write(cut.join("balls.arrows"), &whole[..length]).unwrap();
+        let output = Command::new(&python).args(["-c", killed]).current_dir(&cut).output().unwrap();
+        assert!(output.status.success(), "{length}: {}", String::from_utf8_lossy(&output.stderr));
     }
     for snippet in snippets {
         let output = Command::new(&python).args(["-c", snippet]).current_dir(folder.path()).output().unwrap();

@@ -152,3 +152,46 @@ fn the_events_of_a_summary_are_the_sum_of_its_bars() {
         }
     }
 }
+
+/// Every step is some agent's: where few have lived, those who are told took them all.
+#[test]
+fn the_slowest_agents_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |text: &str, words: &[&str]| {
+        fs::write(folder.path().join("a.hy"), text).unwrap();
+        let run = hyc(folder.path(), &[&["run", "a.hy", "--stats", "s.json"], words].concat());
+        let stats: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(folder.path().join("s.json")).unwrap()).unwrap();
+        (out(&run), stats)
+    };
+    let hard = "agent A(w: real) { state x = 1, v = 0  flow { x' = v  v' = -w*w*x } }
+        system { slow = A[29](w = 1)  hard = A(w = 2000) }  run { until 10 }";
+    let (said, stats) = run(hard, &[]);
+    assert!(said.contains("  slowest    hard ("), "{said}");
+    let slowest = stats["slowest_agents"].as_object().unwrap();
+    assert!(
+        slowest.len() == 8 && slowest["hard"].as_u64().unwrap() * 10 > 9 * stats["steps"].as_u64().unwrap()
+    );
+    // all alike: nobody is slow
+    let (said, _) = run(&hard.replace("2000", "1"), &[]);
+    assert!(!said.contains("slowest"), "{said}");
+    // alone, coupled, stiff, in changing modes, born and dead
+    let lives = "agent A(w: real) { state x = 1, v = 0  flow { x' = v }
+          initial mode P { flow { v' = -w*w*x }  a: when x <= -0.5 -> Q }  mode Q { flow { v' = -2*w*w*x }  b: when x >= 0.5 -> P } }
+        agent C(o: A) { state y = 0  flow { y' = 100*(o.x - y) } }
+        agent S { discrete n: int = 0  spawn: every 3 when n < 2 { n := n + 1  create B() } }
+        agent B { state z = 0  flow { z' = cos(z) }  end: when z >= 1 { destroy self } }
+        system { a = A(w = 3)  d = A(w = 5)  c = C(o = a)  s = S() }  run { until 20 }";
+    for words in [
+        &["--integrator", "auto"][..],
+        &["--integrator", "tsit5"],
+        &["--algorithm", "masim-plain"],
+        &["-j", "2"],
+    ] {
+        let (_, stats) = run(lives, words);
+        let slowest = stats["slowest_agents"].as_object().unwrap();
+        let sum: u64 = slowest.values().map(|steps| steps.as_u64().unwrap()).sum();
+        assert_eq!(Some(sum), stats["steps"].as_u64(), "{words:?}: {slowest:?}");
+        assert!(slowest.keys().any(|name| name.starts_with("B#")), "{slowest:?}");
+    }
+}

@@ -196,3 +196,136 @@ fn a_table_can_come_through_a_pipe() {
     assert!(child.wait().unwrap().success());
     assert_eq!(lines(&read(folder.path(), "plot.svg")), lines(&read(folder.path(), "walk.svg")));
 }
+
+/// A PNG is the picture that the SVG is: where a line jumps, it goes straight there, and nothing of it lies outside its panel.
+#[test]
+fn lines_that_jump_are_the_same_in_both_forms() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let text = "agent Car(u: real [m/s]) { state x: real [m] = 0  flow { x' = u }  wrap: when x >= 100 [m] { x := 0 } }
+        system { c = Car[2](u = 10 + index) }  run { until 60 }";
+    fs::write(folder.join("ring.hy"), text).unwrap();
+    fine(folder, &["plot", "ring.hy"]);
+    fine(folder, &["plot", "ring.hy", "-o", "ring.png"]);
+    let bytes = fs::read(folder.join("ring.png")).unwrap();
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    let at = |x: usize, y: usize| &pixels[3 * (y * info.width as usize + x)..][..3];
+    let colour = [0xe6, 0x9f, 0x00];
+    let svg = lines(&read(folder, "ring.svg"));
+    let (_, line) = svg.iter().find(|(stroke, points)| stroke == "#E69F00" && points.len() > 100).unwrap();
+    // down at each wrap
+    let jumps: Vec<_> = line.windows(2).filter(|pair| pair[1].1 - pair[0].1 > 50.0).collect();
+    assert_eq!(jumps.len(), 6);
+    for jump in jumps {
+        let (x, y) = ((jump[0].0 + jump[1].0) / 2.0, (jump[0].1 + jump[1].1) / 2.0);
+        let is_there = (x as usize - 1..=x as usize + 2).any(|x| at(x, y as usize) == colour);
+        assert!(is_there, "{jump:?}");
+    }
+    let range = |of: fn(&(f64, f64)) -> f64| {
+        let values = || line.iter().map(of);
+        (values().fold(f64::INFINITY, f64::min) - 2.0, values().fold(0.0, f64::max) + 2.0)
+    };
+    let (xs, ys) = (range(|point| point.0), range(|point| point.1));
+    let below = ys.1 + 60.0;
+    for y in 0..info.height as usize {
+        for x in 0..info.width as usize {
+            let is_inside = (xs.0..=xs.1).contains(&(x as f64)) && (ys.0..=ys.1).contains(&(y as f64));
+            // the legend has lines of its own
+            let is_legend = y as f64 > below;
+            assert!(at(x, y) != colour || is_inside || is_legend, "ink at {x}, {y}: not in {xs:?}, {ys:?}");
+        }
+    }
+}
+
+#[test]
+fn events_are_marked_beside_a_trajectory() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("walk.hy"), MODEL).unwrap();
+    fine(folder, &["run", "walk.hy", "-q"]);
+    let n_marks = |svg: &str| {
+        lines(svg).into_iter().filter(|(stroke, points)| stroke == "#1B1F24" && points.len() == 2).count()
+    };
+    fine(folder, &["plot", "walk.csv"]);
+    let without = n_marks(&read(folder, "walk.svg"));
+    fine(folder, &["plot", "walk.csv", "--events", "turns.csv"]);
+    let n_events = read(folder, "turns.csv").lines().count() - 1;
+    assert!(n_events > 5);
+    assert_eq!(n_marks(&read(folder, "walk.svg")) - without, n_events);
+    // as the model's own plot has them
+    for (words, says) in [
+        (["plot", "walk.hy", "--events", "turns.csv"], "is for a trajectory"),
+        (["plot", "walk.csv", "--events", "walk.csv"], "`walk.csv` is no event log"),
+    ] {
+        let output = hyc(folder, &words);
+        let err = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && err.contains(says), "{words:?}: {err}");
+    }
+    // over time as well, in a plane
+    for input in ["walk.csv", "walk.hy"] {
+        fine(folder, &["plot", input, "--xy", "time,x", "-o", "time.svg"]);
+        assert!(read(folder, "time.svg").contains("time, s"), "{input}");
+    }
+}
+
+/// Agents of a log have the order of their numbers, whoever had an event first.
+#[test]
+fn rows_of_a_log_are_in_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut log = String::from("time,micro,transition,agent,other,from,to\n");
+    for (t, agent) in ["cars[10]", "cars[2]", "b", "cars[1]", "P#7"].iter().enumerate() {
+        log += &format!("{t},0,Car.go,{agent},,,\n");
+    }
+    fs::write(folder.join("log.csv"), log).unwrap();
+    fine(folder, &["plot", "log.csv"]);
+    let svg = read(folder, "log.svg");
+    let mut places: Vec<usize> = Vec::new();
+    for name in ["P#7", "b", "cars[1]", "cars[2]", "cars[10]"] {
+        places.push(svg.find(&format!(">\n{name}\n<")).unwrap_or_else(|| panic!("{name}: {svg}")));
+    }
+    assert!(places.is_sorted(), "{places:?}");
+}
+
+/// Of very many points only those are in the picture that can be told apart.
+#[test]
+fn a_picture_of_many_agents_stays_small() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut table = String::from("time,micro,agent,mode,x\n");
+    for k in 0..400 {
+        for agent in 0..100 {
+            let x = if k < 200 { k as f64 } else { 200.0 + 50.0 * (f64::from(agent) * 0.1).sin() };
+            table += &format!("{},0,a[{agent}],,{x}\n", f64::from(k));
+        }
+    }
+    fs::write(folder.join("many.csv"), table).unwrap();
+    fine(folder, &["plot", "many.csv"]);
+    let lines = lines(&read(folder, "many.svg"));
+    let drawn: Vec<_> = lines.iter().filter(|(_, points)| (3..=6).contains(&points.len())).collect();
+    assert_eq!(drawn.len(), 100);
+    assert!(lines.iter().all(|(_, points)| points.len() <= 6));
+}
+
+/// What tells long names apart is seen, and the legend goes on in the next row.
+#[test]
+fn legends_have_room() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut table = String::from("time,micro,agent,mode,x\n");
+    for k in 0..60 {
+        for agent in 0..3 {
+            table += &format!("{k},0,a_very_long_name[{agent}],AModeWithALongName{},{k}\n", k / 5);
+        }
+    }
+    fs::write(folder.join("long.csv"), table).unwrap();
+    fine(folder, &["plot", "long.csv"]);
+    let svg = read(folder, "long.svg");
+    assert!((0..3).all(|agent| svg.contains(&format!("a_ver\u{2026}ame[{agent}]"))));
+    let widest =
+        svg.split("<text x=\"").skip(1).map(|rest| rest.split('"').next().unwrap().parse::<f64>().unwrap());
+    assert!(widest.fold(0.0, f64::max) < 880.0);
+    assert!((0..12).all(|mode| svg.contains(&format!("AModeWithALongName{mode}\n"))));
+}

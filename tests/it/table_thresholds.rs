@@ -26,7 +26,11 @@ impl Line {
             let last = line.at[line.at.len() - 1];
             // Powers of two apart, so that slopes are exact, too.
             line.at.push(last + [0.25, 0.5, 1.0, 2.0][dice.below(4)]);
-            let value = if dice.percent(40) { line.values[dice.below(line.values.len())] } else { eighth(dice, -8, 8) };
+            let value = if dice.percent(40) {
+                line.values[dice.below(line.values.len())]
+            } else {
+                eighth(dice, -8, 8)
+            };
             line.values.push(value);
         }
         line
@@ -112,7 +116,11 @@ fn thresholds_that_are_rows_of_tables_are_exact() {
         let line = Line::random(dice);
         let level = line.values[dice.below(line.values.len())];
         let [shift, other] = [eighth(dice, -16, 16), eighth(dice, -16, 16)];
-        let flow = *dice.pick(&["1", "table(\"rows.csv\", \"u\", time - shift)", "table(\"rows.csv\", \"u\", time - shift) - x"]);
+        let flow = *dice.pick(&[
+            "1",
+            "table(\"rows.csv\", \"u\", time - shift)",
+            "table(\"rows.csv\", \"u\", time - shift) - x",
+        ]);
         // No row lies at the end: there what comes after would decide.
         let end = 8.0625;
         let text = format!(

@@ -197,7 +197,9 @@ fn a_spline_of_two_rows_is_their_line() {
 #[test]
 fn rounding_leads_no_spline_beyond_its_rows() {
     // The rows at 0 are the least: a bound, a hazard and a strict guard all look at them.
-    for rows in ["0,0.8\n1.9,0\n2.6,2.1\n", "0,0.2\n1,0\n1.8,2.1\n", "0,0.8\n2,0\n2.8,2\n", "0,1.7\n0.3,0\n0.9,0.4\n"] {
+    for rows in
+        ["0,0.8\n1.9,0\n2.6,2.1\n", "0,0.2\n1,0\n1.8,2.1\n", "0,0.8\n2,0\n2.8,2\n", "0,1.7\n0.3,0\n0.9,0.4\n"]
+    {
         let run = Case::new(
             "agent A { state x = 0  let u = spline(\"rows.csv\", \"v\", time)
                flow { x' = u }  invariant u >= 0  below: when u < 0 { }  hit: rate u { } }

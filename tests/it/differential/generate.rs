@@ -164,7 +164,14 @@ fn agent(dice: &mut Dice, shapes: &[Shape], shape: &Shape, text: &mut String) {
     text.push_str("}\n");
 }
 
-pub fn flow(dice: &mut Dice, shapes: &[Shape], shape: &Shape, states: &[&str], indent: &str, text: &mut String) {
+pub fn flow(
+    dice: &mut Dice,
+    shapes: &[Shape],
+    shape: &Shape,
+    states: &[&str],
+    indent: &str,
+    text: &mut String,
+) {
     if states.is_empty() {
         return;
     }

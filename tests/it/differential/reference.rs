@@ -305,9 +305,8 @@ impl<'a> Reference<'a> {
     /// Returns what they create and destroy.
     fn run_entries(&mut self, entries: &[(usize, Vec<ModeId>)]) -> Done {
         let mut all = Done::default();
-        let depth = |agent: usize, mode: ModeId| {
-            self.model.types[self.world.agents[agent].ty].modes[mode].depth
-        };
+        let depth =
+            |agent: usize, mode: ModeId| self.model.types[self.world.agents[agent].ty].modes[mode].depth;
         let levels: Vec<Vec<usize>> = entries
             .iter()
             .map(|(agent, entered)| {

@@ -79,7 +79,8 @@ fn rule_04_a_mode_that_goes_to_the_history_of_its_region_leaves_other_regions_al
     );
     let again = "A.Q1->Q.history a Q.Q1->Q.Q1";
     // At 3 both write n: the second waits for the next micro-step.
-    let log = [format!("0 {again}"), format!("0 {again}"), "0 A.late a P.P1->P.P2".into(), format!("1 {again}")];
+    let log =
+        [format!("0 {again}"), format!("0 {again}"), "0 A.late a P.P1->P.P2".into(), format!("1 {again}")];
     assert_eq!(run.log(), log);
     assert_eq!(run.value("a.n"), 13.0);
     assert_eq!(run.mode("a"), "P.P2|Q.Q1");
