@@ -124,7 +124,7 @@ pub fn lives(dice: &mut Dice, shapes: &[Shape], shape: &Shape, text: &mut String
     };
     let makeable: Vec<&Shape> = shapes.iter().filter(can_make).collect();
     if !makeable.is_empty() && dice.percent(70) {
-        let other: &Shape = dice.pick(&makeable);
+        let other = *dice.pick(&makeable);
         let room = format!("(count o in {}) <= {}", other.name, other.agents + dice.below(3));
         let views = [View { prefix: "", shape }];
         let trigger = match dice.below(4) {
