@@ -143,28 +143,30 @@ impl<'a> Context<'a> {
         let middle = first + (last - first) / 2;
         let before = self.choose_piece(pieces, first, middle);
         let after = self.choose_piece(pieces, middle + 1, last);
-        let knot = self.unchecked(pieces.at[middle], pieces.span);
-        let condition = self.apply(Op::Lt, [pieces.argument, knot.id], Ty::Bool, pieces.span);
+        self.split_at(pieces, pieces.at[middle], [before, after])
+    }
+
+    /// One value where the argument is less than this, the other from there on.
+    fn split_at(&mut self, pieces: &Pieces, at: f64, [before, after]: [Value; 2]) -> Value {
+        let at = self.unchecked(at, pieces.span);
+        let condition = self.apply(Op::Lt, [pieces.argument, at.id], Ty::Bool, pieces.span);
         self.apply(Op::Select, [condition.id, before.id, after.id], Ty::Real, pieces.span)
     }
 
     /// The line before knot k: `y + s (e - x)` from the knot before it, of a cubic `y + d (s + d (c2 + d c3))` with d = e - x; constant outside.
     /// Where a cubic comes to rest at knot k, its second half is written from there: so rounding leads neither half beyond its row.
     fn piece(&mut self, pieces: &Pieces, k: usize) -> Value {
-        let span = pieces.span;
         let from = k.saturating_sub(1);
         let before = pieces.powers(k);
         if k == 0 || k == pieces.at.len() || before.iter().all(|&power| power == 0.0) {
-            return self.unchecked(pieces.values[from], span);
+            return self.unchecked(pieces.values[from], pieces.span);
         }
         let first = self.polynomial(pieces, from, before);
         if !pieces.rests_at(k) {
             return first;
         }
         let second = self.polynomial(pieces, k, pieces.powers_from_behind(k));
-        let middle = self.unchecked(0.5 * pieces.at[from] + 0.5 * pieces.at[k], span);
-        let condition = self.apply(Op::Lt, [pieces.argument, middle.id], Ty::Bool, span);
-        self.apply(Op::Select, [condition.id, first.id, second.id], Ty::Real, span)
+        self.split_at(pieces, 0.5 * pieces.at[from] + 0.5 * pieces.at[k], [first, second])
     }
 
     /// The value at a knot and powers of the distance from it.
