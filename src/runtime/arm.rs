@@ -6,10 +6,11 @@ use smallvec::SmallVec;
 use crate::codegen::kernel::{AgentView, Kernel};
 use crate::codegen::program::{Atom, Relation, Slot, Trigger};
 use crate::runtime::act::Written;
+use crate::runtime::atom_state::{AtomState, closed};
 use crate::runtime::engine::{Due, Engine};
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::fold::Folded;
-use crate::runtime::guards::{AtomState, Origin, closed, inside};
+use crate::runtime::guards::{Origin, inside};
 use crate::runtime::population::{ABSENT, Agent, Slots};
 use crate::runtime::present::{Depth, depth_read};
 use crate::runtime::sleep::Regard;
@@ -53,6 +54,7 @@ impl<'p> Engine<'p, '_> {
             if self.guards.atoms[index].certified != time {
                 self.guards.atoms[index].slack = 0.0;
             }
+            self.guards.atoms[index].sideless = true;
             if !self.guards.atoms[index].left_out && !self.settle_far(index) {
                 self.settle(index, rule, &Written::default());
             }
@@ -144,19 +146,27 @@ impl<'p> Engine<'p, '_> {
             && folds.is_empty()
             && !self.leads_elsewhere(index, written)
             && self.value_before(kernel, &slots, written) == Some(g);
+        let mut has_side = true;
         let truth = if g.is_nan() || absent && !g.is_finite() {
+            has_side = false;
             false
         } else if unchanged && before.rooted {
-            touched = before.touched;
+            (touched, has_side) = (before.touched, !before.sideless);
             before.truth
         } else if unchanged && before.slack == 0.0 {
             // Off its boundary, and nothing that it reads has changed: only its rates have.
+            has_side = !before.sideless;
             before.truth
         } else if let Some(jumps) = &atom.jumps {
             let given_afresh = rule == Rule::Fresh || rule == Rule::Woken && !unchanged;
             let side =
                 if given_afresh && atom.relation != Relation::Crossing { Side::At } else { Side::After };
-            self.truth_on(side, jumps, (&slots, &folds), before.truth)
+            let truth = self.truth_on(side, jumps, (&slots, &folds), before.truth);
+            if atom.relation == Relation::Crossing && before.sideless {
+                // Where neither side is told, it stays as it was.
+                has_side = truth == self.truth_on(side, jumps, (&slots, &folds), !before.truth);
+            }
+            truth
         } else {
             // Where g can jump in a way that is not known, a bound of its rounding may be the height of the jump: then its sign
             // is taken as it is.
@@ -164,7 +174,11 @@ impl<'p> Engine<'p, '_> {
             let clear = g.abs() > if unchanged { before.slack.max(rounding) } else { rounding };
             let along = if unchanged { before.truth } else { closed(atom.relation, before.truth) };
             let is_hazard = rule == Rule::Rates && self.is_hazard(before.instance);
-            let mut decide = || self.decide(index, (g, rounding), along, &slots, &folds);
+            let mut decide = || {
+                let decided = self.decide(index, (g, rounding), &slots, &folds);
+                has_side = decided.is_some();
+                decided.unwrap_or(along)
+            };
             match rule {
                 // What is left of a hazard is as likely to be next to nothing as anything else.
                 _ if is_hazard => g < 0.0,
@@ -184,12 +198,13 @@ impl<'p> Engine<'p, '_> {
         // A sign that has changed in this instant has done so, whatever is written afterwards.
         if atom.relation == Relation::Crossing
             && rule == Rule::Woken
-            && (before.touched || truth != before.truth)
+            && (before.touched || truth != before.truth && !before.sideless)
         {
             touched = true;
         }
         let state = &mut self.guards.atoms[index];
         state.truth = truth;
+        state.sideless = before.sideless && !has_side;
         state.touched = touched;
         state.rooted = enters || rule == Rule::Woken && before.rooted && unchanged;
         if state.touched || state.rooted {
@@ -220,7 +235,7 @@ impl<'p> Engine<'p, '_> {
                 let before = self.guards.atoms[index];
                 self.settle(index, Rule::Rates, &Written::default());
                 let touched = match atom.relation {
-                    Relation::Crossing => self.guards.atoms[index].truth != before.truth,
+                    Relation::Crossing => !before.sideless && self.guards.atoms[index].truth != before.truth,
                     Relation::NonPositive | Relation::Negative => {
                         self.true_exactly_now(instance, atom, &slots)
                     }
@@ -285,15 +300,14 @@ impl<'p> Engine<'p, '_> {
         self.queues.push_uncertified(due, self.window_end);
     }
 
-    /// Rule 3, "On the boundary": by the first of two rates that is not zero within rounding; `along` where neither decides.
+    /// Rule 3, "On the boundary": by the first of two rates that is not zero within rounding; none where neither decides.
     fn decide(
         &mut self,
         index: usize,
         (g, rounding): (f64, f64),
-        along: bool,
         slots: &Slots,
         folds: &[Folded<'_>],
-    ) -> bool {
+    ) -> Option<bool> {
         let (atom, _) = self.guards.atom_slots(&self.agents, index);
         let kernel = self.program.kernel(atom.rates);
         let jet = truth::jet(&self.agents, &mut self.present, kernel, slots, folds);
@@ -303,7 +317,7 @@ impl<'p> Engine<'p, '_> {
             state.slack.max(jet[1].abs() * time_resolution(self.present.time)).min(1e-3 * (1.0 + g.abs()));
         let band = by_rate.max(rounding);
         if g.abs() > band || !jet[1].is_finite() {
-            return g < 0.0;
+            return Some(g < 0.0);
         }
         state.slack = band;
         let bounds = if atom.smooth { self.jet_rounding(kernel, slots, folds, None) } else { [0.0; 3] };
@@ -312,9 +326,9 @@ impl<'p> Engine<'p, '_> {
             None => direction(&jet, &bounds),
         };
         match direction {
-            Direction::Up => false,
-            Direction::Down => true,
-            Direction::Along => along,
+            Direction::Up => Some(false),
+            Direction::Down => Some(true),
+            Direction::Along => None,
         }
     }
 

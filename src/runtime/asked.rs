@@ -1,8 +1,9 @@
 //! Conditions that nobody follows along the flow: asked at an instant, comparison by comparison, with rule 3's boundary.
 
 use crate::codegen::program::{Atom, Condition, Frame, Guard, Relation};
+use crate::runtime::atom_state::closed;
 use crate::runtime::engine::Engine;
-use crate::runtime::guards::{allowed, closed};
+use crate::runtime::guards::allowed;
 use crate::runtime::population::Slots;
 use crate::runtime::solve::roots::{Direction, direction};
 use crate::runtime::solve::time_resolution;

@@ -5,10 +5,10 @@
 //! it ends, or its agents are rewritten, before the algorithm sees it; it is *late* if the algorithm sees it more than
 //! [`LATE`] afterwards.
 
+use crate::runtime::atom_state::closed;
 use crate::runtime::detect::{AtomCurve, CurveRows};
 use crate::runtime::engine::Engine;
 use crate::runtime::fold;
-use crate::runtime::guards::closed;
 use crate::runtime::observe::Misses;
 use crate::runtime::present::Depth;
 use crate::runtime::solve::roots::{Known, Search, first_flip};

@@ -10,9 +10,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::codegen::program::{Atom, Jumps, KinkKind, Relation};
 use crate::math::Interval;
+use crate::runtime::atom_state::{Leap, closed};
 use crate::runtime::detect::{AtomCurve, CurveRows};
 use crate::runtime::fold::Folded;
-use crate::runtime::guards::{Leap, closed};
 use crate::runtime::population::{Agents, Slots};
 use crate::runtime::solve::roots::{Curve, Flip, Known, Search, first_flip};
 use crate::runtime::solve::{time_resolution, ulp};

@@ -1,12 +1,12 @@
 //! Certification (I2, I3, I6): each comparison is known not to change up to a time, or known to change at one.
 use smallvec::SmallVec;
 
-use crate::codegen::program::Atom;
+use crate::codegen::program::{Atom, Relation};
+use crate::runtime::atom_state::{Leap, closed};
 use crate::runtime::branches::{Jumping, width};
 use crate::runtime::detect::AtomCurve;
 use crate::runtime::engine::{Due, Engine};
 use crate::runtime::fold::{self, Folded};
-use crate::runtime::guards::{Leap, closed};
 use crate::runtime::observe::WhyUndecided;
 use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::Depth;
@@ -19,6 +19,9 @@ pub const ENDLESS: f64 = 1e15;
 
 /// How often at most a comparison is looked at before it tries again to sleep.
 const BACKOFF_MAX: u16 = 64;
+
+/// So many parts of a stretch are looked at for a side of a `crossing` that had none.
+const PARTS_MAX: usize = 512;
 
 impl Engine<'_, '_> {
     /// Certifies every atom up to the cover at least; without a cover, up to what happens next.
@@ -85,7 +88,9 @@ impl Engine<'_, '_> {
         }
         let absent = atom.slots.iter().any(|&slot| slots[slot] == ABSENT);
         if absent && truth::evaluate(&self.agents, &mut self.present, kernel, &slots, &folds).is_nan() {
+            let sideless = self.guards.atoms[index].sideless;
             self.certified(index, self.time_end);
+            self.guards.atoms[index].sideless = sideless;
             return;
         }
         let by_rates = fold::depth(self.program, kernel, &folds) != Depth::States;
@@ -111,6 +116,14 @@ impl Engine<'_, '_> {
             reach: if blocked { time_resolution(to) } else { 2.0 * ulp(to) },
         };
         let (search, leap) = self.search(atom, (&slots, &folds), from, to, known);
+        let end = match &search {
+            Search::Flip(flip) => flip.time,
+            Search::Until(until) => *until,
+            Search::None | Search::Along | Search::Undecided => to,
+        };
+        let sideless = state.sideless
+            && atom.relation == Relation::Crossing
+            && self.has_no_side((atom, &slots, &folds), (from, end));
         match search {
             Search::None => {
                 // It may not have left its boundary yet.
@@ -156,6 +169,29 @@ impl Engine<'_, '_> {
                 self.queues.flips.push(Due { time: flip.time, number: index as u32, version: state.version });
             }
         }
+        self.guards.atoms[index].sideless = sideless;
+    }
+
+    /// Whether g, which was zero at the beginning of a stretch, is positive nowhere in it but for rounding: then it has had no side.
+    fn has_no_side(
+        &mut self,
+        (atom, slots, folds): (&Atom, &Slots, &[Folded<'_>]),
+        span: (f64, f64),
+    ) -> bool {
+        let mut curve = AtomCurve::new(&self.agents, atom, slots, folds, &mut self.curves);
+        let mut parts = vec![span];
+        for _ in 0..PARTS_MAX {
+            let Some((from, to)) = parts.pop() else { return true };
+            let middle = 0.5 * (from + to);
+            let rounding = if atom.smooth { width(curve.jet_range(middle, middle)[0]) } else { 0.0 };
+            if curve.jet(middle)[0] > rounding {
+                return false;
+            }
+            if curve.jet_range(from, to)[0].hi > rounding && from < middle && middle < to {
+                parts.extend([(from, middle), (middle, to)]);
+            }
+        }
+        true
     }
 
     /// Whether g is within rounding of zero at a time.
@@ -196,8 +232,7 @@ impl Engine<'_, '_> {
     pub fn certified(&mut self, index: usize, until: f64) {
         let state = &mut self.guards.atoms[index];
         if until > state.certified {
-            state.slack = 0.0;
-            state.settled = false;
+            (state.slack, state.settled, state.sideless) = (0.0, false, false);
         }
         state.certified = until;
         state.far = f64::INFINITY;

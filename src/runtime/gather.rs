@@ -239,11 +239,12 @@ impl Engine<'_, '_> {
         let jet = { AtomCurve::new(&self.agents, atom, &slots, &folds, &mut self.curves).jet(time) };
         let state = &mut self.guards.atoms[index];
         state.touched = match (atom.relation, state.leap) {
-            (Relation::Crossing, _) => true,
+            (Relation::Crossing, _) => !state.sideless,
             (Relation::NonPositive, None) => state.truth,
             (Relation::Negative, _) | (Relation::NonPositive, Some(_)) => false,
         };
         state.truth = state.leap.map_or(!state.truth, |leap| leap.after);
+        state.sideless = false;
         state.rooted = true;
         self.guards.roused.push(index as u32);
         let state = &mut self.guards.atoms[index];

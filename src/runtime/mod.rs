@@ -56,6 +56,7 @@ mod fold;
 mod definition;
 mod noticed;
 mod candidates;
+mod atom_state;
 mod guards;
 mod truth;
 mod flow_rates;

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use crate::runtime::atom_state::AtomState;
 use crate::runtime::candidates::Candidate;
-use crate::runtime::guards::{AtomState, Guards, Origin};
+use crate::runtime::guards::{Guards, Origin};
 use crate::runtime::population::Agents;
 
 impl Guards<'_> {

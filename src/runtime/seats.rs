@@ -1,8 +1,9 @@
 //! Seats of those who come and go: which comparisons below quantifiers are theirs, and room for more.
 
+use crate::runtime::atom_state::AtomState;
 use crate::runtime::definition::AtomShape;
 use crate::runtime::engine::Queues;
-use crate::runtime::guards::{AtomState, Guards};
+use crate::runtime::guards::Guards;
 use crate::runtime::population::Agents;
 
 impl Guards<'_> {

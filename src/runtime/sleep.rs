@@ -63,7 +63,7 @@ impl Engine<'_, '_> {
         }
         let far = self.pure_since(index);
         let state = &mut self.guards.atoms[index];
-        (state.truth, state.touched, state.rooted) = (bound.hi < 0.0, false, false);
+        (state.truth, state.sideless, state.touched, state.rooted) = (bound.hi < 0.0, false, false, false);
         (state.certified, state.flip, state.settled, state.far) = (self.time_end, f64::INFINITY, false, far);
         state.version += 1;
         true

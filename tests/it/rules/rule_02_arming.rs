@@ -320,6 +320,46 @@ fn rule_02_a_crossing_that_is_zero_when_armed_takes_its_next_sign() {
     all_near(&run.times("A.go"), &[PI, 2.0 * PI], 1e-9);
 }
 
+/// What is zero when armed has no side: neither sign that it takes first is a change. That of `c` is written, that of `x` comes
+/// at a kink of its flow, that of `y` at once but by its third rate only.
+#[test]
+fn rule_02_a_crossing_that_stays_zero_takes_either_sign_without_an_event() {
+    let run = simulate(
+        "agent A(s: real) {
+           discrete c = 0  state x = 0, y = 0
+           flow { x' = if time < 1 then 0 else if time < 2 then s else -2*s  y' = s*(time^3 - time^2) }
+           first: after 1.5 { c := s }
+           back: after 3 { c := -s }
+           written: when crossing(c) { }
+           kinked: when crossing(x) { }
+           curved: when crossing(y) { } }
+         system { up = A(s = 1)  down = A(s = -1) }
+         run { until 4 }",
+    );
+    for agent in ["up", "down"] {
+        assert_eq!(run.times_of("A.written", agent), [3.0], "{agent}");
+        all_near(&run.times_of("A.kinked", agent), &[2.5], 1e-12);
+        all_near(&run.times_of("A.curved", agent), &[4.0 / 3.0], 1e-6);
+    }
+}
+
+/// Entering the mode again arms the guard anew, and what is zero then has no side again.
+#[test]
+fn rule_02_a_crossing_that_is_armed_again_at_zero_forgets_its_side() {
+    let run = simulate(
+        "agent A(s: real) {
+           discrete c = -s
+           initial mode M { again: after 1 -> M { c := 0 }  x: when crossing(c) { }
+                            tick: every 0.5 { c := s } } }
+         system { up = A(s = 1)  down = A(s = -1) }
+         run { until 1.9 }",
+    );
+    for agent in ["up", "down"] {
+        // -s to s is a change; 0 to s, after the mode has been entered again, is none
+        assert_eq!(run.times_of("A.x", agent), [0.5], "{agent}");
+    }
+}
+
 #[test]
 fn rule_02_a_touch_is_no_crossing() {
     let run = simulate(
