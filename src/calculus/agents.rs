@@ -320,13 +320,14 @@ fn trigger(
     };
     Ok(match trigger {
         &ir::Trigger::When(condition) => Trigger::When(guard(draft, scope, condition)?),
-        ir::Trigger::Rate { rate, guard: condition, .. } => {
+        ir::Trigger::Rate { rate, guard: condition, flows, .. } => {
             let ty = scope.frame.slots[0].ty();
             let hazard = draft.types[ty].hazards.iter().position(|known| known == label);
             let Some(hazard) = hazard else {
                 // No agent has a state for the hazard of a pair.
                 return Ok(Trigger::Chance {
                     rate: number(draft, scope, *rate, &format!("{label} rate"))?,
+                    flows: *flows,
                     guard: condition.map(|condition| guard(draft, scope, condition)).transpose()?,
                 });
             };

@@ -185,7 +185,7 @@ fn transition(
         Trigger::Every { period, guard } => ("every", Some(*period), guard.as_ref()),
         Trigger::On { guard, .. } => ("on", None, guard.as_ref()),
         Trigger::Rate { guard, .. } => ("rate", None, guard.as_ref()),
-        Trigger::Chance { rate, guard } => ("rate", Some(*rate), guard.as_ref()),
+        Trigger::Chance { rate, guard, .. } => ("rate", Some(*rate), guard.as_ref()),
     };
     block.functions.extend(time.iter().chain(&transition.priority));
     if let Some(guard) = guard {

@@ -90,7 +90,7 @@ impl<'a> Former<'a> {
             Trigger::When(guard) => vec![self.guard(guard)],
             Trigger::After { delay: time, guard }
             | Trigger::Every { period: time, guard }
-            | Trigger::Chance { rate: time, guard } => {
+            | Trigger::Chance { rate: time, guard, .. } => {
                 let mut parts = vec![self.function(*time)];
                 parts.extend(guard.as_ref().map(|guard| self.guard(guard)));
                 parts

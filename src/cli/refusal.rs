@@ -1,7 +1,7 @@
 //! What is refused before anything is done: what an algorithm cannot run, and a run without end.
 
 use super::Refused;
-use crate::codegen::program::Program;
+use crate::codegen::program::{PairTransition, Program, Trigger};
 use crate::model::Model;
 use crate::model::ir::Action;
 use crate::runtime::{Algorithm, published_take};
@@ -14,6 +14,13 @@ pub(super) fn refuse_aggregates(algorithm: Algorithm, program: &Program) -> Resu
     let name = algorithm.name();
     if !program.properties().is_empty() {
         return Err(format!("`{name}` does not watch properties; there is `masim`"));
+    }
+    let flows =
+        |pair: &PairTransition| matches!(pair.transition.trigger, Trigger::Chance { flows: true, .. });
+    if program.interactions.iter().flat_map(|interaction| &interaction.transitions).any(flows) {
+        return Err(format!(
+            "`{name}` does not follow the rate of an interaction along the flow; there is `masim`"
+        ));
     }
     if published_take(program) {
         return Ok(());

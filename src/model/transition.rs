@@ -204,9 +204,6 @@ impl<'a> Context<'a> {
     fn hazard(&mut self, scope: &mut Scope<'a>, expr: &'a ast::Expr, guard: Option<ExprId>) -> Trigger {
         let per_time = Slot::of(Dimension::ONE).per_time();
         let rate = self.lower_into(scope, expr, per_time, "a rate");
-        if let (Home::Pair(_), Some(span)) = (scope.home, self.first_flowing(rate.id)) {
-            self.report(InteractionError::FlowingRate { rate: expr.span, span });
-        }
         let facts = self.facts[rate.id.index()];
         if rate.ty != Ty::Wrong
             && facts.closed
@@ -221,11 +218,11 @@ impl<'a> Context<'a> {
             let not = self.apply(Op::Not, [guard], Ty::Bool, expr.span).id;
             claim = self.apply(Op::Or, [not, claim], Ty::Bool, expr.span).id;
         }
-        Trigger::Rate { rate: rate.id, guard, claim }
+        Trigger::Rate { rate: rate.id, guard, claim, flows: self.flows(rate.id) }
     }
 
-    /// The first part of an expression that may change while nothing is written: a state, the time, a set; none if there is none.
-    fn first_flowing(&self, root: ExprId) -> Option<Span> {
+    /// Whether an expression may change while nothing is written: whether it reads a state, a rate, the time or a set.
+    fn flows(&self, root: ExprId) -> bool {
         let (mut pending, mut seen) = (vec![root], FxHashSet::default());
         while let Some(id) = pending.pop() {
             if !seen.insert(id) {
@@ -233,15 +230,15 @@ impl<'a> Context<'a> {
             }
             let expr = &self.model.exprs[id];
             match expr.kind {
-                ExprKind::State(..) | ExprKind::Rate(..) | ExprKind::Time => return Some(expr.span),
-                ExprKind::Quantifier { .. } | ExprKind::Aggregate { .. } => return Some(expr.span),
+                ExprKind::State(..) | ExprKind::Rate(..) | ExprKind::Time => return true,
+                ExprKind::Quantifier { .. } | ExprKind::Aggregate { .. } => return true,
                 ExprKind::Let(agent, number) => pending.extend(self.let_value(agent, number)),
                 ExprKind::Call(function, _) => pending.push(self.model.functions[function].body),
                 _ => {}
             }
             for_each_operand(&expr.kind, |operand| pending.push(operand));
         }
-        None
+        false
     }
 
     /// A guard. An `exists` that is all of it, or a term of its outermost `and`, gives its agent to the actions.

@@ -323,6 +323,7 @@ impl Engine<'_, '_> {
         if written.before.contains_key(&agent) {
             return;
         }
+        self.catch_up_with(agent);
         self.present.make(&self.agents, &[agent], Depth::States);
         let aux = self.agents.agents[agent].aux.clone();
         written.before.insert(agent, (self.present.states(agent).to_vec(), aux));
@@ -338,6 +339,7 @@ impl Engine<'_, '_> {
                 continue;
             }
             self.thaw(agent);
+            self.catch_up_with(agent);
             let number = self.agents.agents[agent].group;
             let group = &mut self.groups.groups[number];
             if group.clock > time && group.clock < f64::INFINITY {

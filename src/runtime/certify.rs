@@ -27,9 +27,8 @@ impl Engine<'_, '_> {
     /// Certifies every atom up to the cover at least; without a cover, up to what happens next.
     pub fn certify_up_to(&mut self, cover: f64) {
         while let Some(&due) = self.queues.uncertified.peek() {
-            let enough = if cover == f64::INFINITY { (self.next_cause() + 1.0).min(ENDLESS) } else { cover };
             // The loop ends the run; until then a search of many roots must not go on.
-            if due.time >= enough || self.interrupted() {
+            if due.time >= self.enough(cover) || self.interrupted() {
                 return;
             }
             self.queues.uncertified.pop();
@@ -41,6 +40,11 @@ impl Engine<'_, '_> {
                 return;
             }
         }
+    }
+
+    /// Up to when all has to be known, s: without a cover, up to what happens next.
+    pub fn enough(&mut self, cover: f64) -> f64 {
+        if cover == f64::INFINITY { (self.next_cause() + 1.0).min(ENDLESS) } else { cover }
     }
 
     /// Looks once more at every atom that is certified up to the cover only: a root that is due within the resolution of

@@ -13,6 +13,7 @@ use crate::runtime::comparisons;
 use crate::runtime::crew::Crew;
 use crate::runtime::detect::CurveRows;
 use crate::runtime::enclose::Enclosures;
+use crate::runtime::exposed::Exposures;
 use crate::runtime::failure::{Failure, Place, Reason};
 use crate::runtime::groups::{Coupling, Groups};
 use crate::runtime::guards::{Guards, Listing, Origin, TooManyGuards};
@@ -71,6 +72,8 @@ pub struct Queues {
     pub flips: BinaryHeap<Due>,
     /// Guard instances with a delay or period; the version is their arming.
     pub schedules: BinaryHeap<Due>,
+    /// Pairs whose hazard flows, at the end of what is known of it; void if their arming is another one.
+    pub exposed: BinaryHeap<Due>,
     /// Groups, at their clocks; void if the clock has another value.
     pub clocks: BinaryHeap<Due>,
     /// Cold agents of which every step is recorded, at the ends of their steps in the window at hand; void if they are not cold.
@@ -152,6 +155,8 @@ pub struct Engine<'p, 'o> {
     pub queues: Queues,
     /// Messages under way.
     pub mail: Mail,
+    /// Hazards of pairs that flow.
+    pub exposures: Exposures,
     /// Makes rows of trajectories.
     pub recorder: Recorder<'p>,
     pub slowest: Slowest,
@@ -247,6 +252,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             registers: Vec::new(),
             queues: Queues::default(),
             mail: Mail::default(),
+            exposures: Exposures::default(),
             notes: observer.wants_reasons().then(|| Box::new(Notes::new(&agents))),
             firings: vec![0; guards.definitions.len()],
             events_of_type: vec![0; program.types.len()],
@@ -410,6 +416,9 @@ impl<'p, 'o> Engine<'p, 'o> {
             guards.atoms[due.number as usize].version == due.version
         });
         compact(&mut queues.schedules, guards.instances.len(), |due| {
+            guards.instances[due.number as usize].arming == due.version
+        });
+        compact(&mut queues.exposed, guards.instances.len(), |due| {
             guards.instances[due.number as usize].arming == due.version
         });
         compact(&mut queues.clocks, groups.groups.len(), |due| {

@@ -41,6 +41,7 @@ impl Engine<'_, '_> {
         let window = first + self.event_tolerance(first);
         let cover = self.cover().min(self.time_end);
         self.certify_up_to(window.min(cover));
+        self.expose_up_to(window.min(cover))?;
         if self.interrupted() || self.has_thawed {
             // Something earlier may not have been found yet.
             return Ok(());
@@ -126,6 +127,7 @@ impl Engine<'_, '_> {
     /// is scheduled. Those `at_once` changed where they had been settled last.
     fn happen(&mut self, mut concerned: Vec<u32>, now: Vec<Due>, at_once: &[usize]) -> Result<(), Failure> {
         let mut candidates = Vec::new();
+        self.catch_up_with_all();
         // Links that the flow changed are updated first (rule 4).
         self.repetitions.instant += 1;
         let woken = self.refresh_links(&concerned)?;

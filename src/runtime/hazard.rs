@@ -4,8 +4,8 @@
 //! is open; the transition fires when nothing is left. The gate is open while the transition's guard is true: a guard of its
 //! own, which changes the gate and nothing else.
 //!
-//! Of an interaction no agent has such a state. There the hazard is constant between writes, and a time is drawn: whenever the hazard
-//! changes, by its guard or by what it reads.
+//! Of an interaction no agent has such a state. Where the hazard is constant between writes, a time is drawn, whenever the hazard
+//! changes, by its guard or by what it reads; where it flows, `exposure` follows it.
 
 use crate::codegen::program::{Distribution, Entry, TransitionSystem, Trigger};
 use crate::math::draw::Key;
@@ -14,6 +14,7 @@ use crate::runtime::arm::Rule;
 use crate::runtime::engine::{Due, Engine};
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::guards::Origin;
+use crate::runtime::population::Slots;
 use crate::runtime::solve::scheduled;
 use crate::runtime::truth::{self, Side};
 
@@ -83,22 +84,25 @@ impl Engine<'_, '_> {
     /// Draws when a pair fires, if its hazard is another one than just before: its guard has become true or false, its rate has been
     /// written, or it has fired. (What is left of an exponential time is one again, so nothing has to be kept.)
     fn set_chance(&mut self, instance: u32, transition: &TransitionSystem) -> Result<(), Failure> {
-        let Trigger::Chance { rate, .. } = transition.trigger else { return Ok(()) };
+        let Trigger::Chance { rate, flows, .. } = transition.trigger else { return Ok(()) };
         if !self.guards.instances[instance as usize].active {
             return Ok(());
         }
         for index in self.guards.atoms_of(instance) {
             self.settle(index, Rule::Rates, &Written::default());
         }
+        let open = self.truths().holds(instance, Side::After);
+        if flows {
+            self.set_exposure(instance, transition, open);
+            return Ok(());
+        }
         let mut hazard = 0.0;
-        if self.truths().holds(instance, Side::After) {
+        if open {
             let (slots, own) = (self.guards.slots(&self.agents, instance), self.guards.roots(instance));
             let frame = &transition.frame;
             hazard = truth::value(&self.agents, &mut self.present, rate, frame, &slots, &own);
             if !(hazard >= 0.0 && hazard.is_finite()) {
-                let blame = self.blame(rate, frame, &slots, &own);
-                let (place, label) = (self.place(slots[0]), transition.label.clone());
-                return Err(Reason::BadHazard { place, label, hazard, blame, span: transition.span }.into());
+                return Err(self.bad_hazard(transition, (&slots, &own), hazard));
             }
         }
         let time = self.present.time;
@@ -109,15 +113,35 @@ impl Engine<'_, '_> {
         state.delay = hazard;
         state.arming += 1;
         if hazard > 0.0 {
-            state.periods += 1;
-            let (draw, version) = (state.periods, state.arming);
-            let [first, second] = [0, 1].map(|which| self.guards.roots(instance)[which]);
-            let variable = format!("{} {}", transition.label, self.agents.draw_path(second));
-            let agent = self.agents.draw_path(first);
-            let key = Key { seed: self.program.run.seed, agent: &agent, variable: &variable, draw };
-            let due = scheduled(time + Distribution::Exponential.draw(&[hazard], key), self.time_end);
+            let version = state.arming;
+            let due = scheduled(time + self.draw_for_pair(instance, transition, hazard), self.time_end);
             self.queues.schedules.push(Due { time: due, number: instance, version });
         }
         Ok(())
+    }
+
+    /// The next number of a pair's own stream, of the exponential distribution of this rate.
+    pub fn draw_for_pair(&mut self, instance: u32, transition: &TransitionSystem, rate: f64) -> f64 {
+        let state = &mut self.guards.instances[instance as usize];
+        state.periods += 1;
+        let draw = state.periods;
+        let [first, second] = [0, 1].map(|which| self.guards.roots(instance)[which]);
+        let variable = format!("{} {}", transition.label, self.agents.draw_path(second));
+        let agent = self.agents.draw_path(first);
+        let key = Key { seed: self.program.run.seed, agent: &agent, variable: &variable, draw };
+        Distribution::Exponential.draw(&[rate], key)
+    }
+
+    /// What the hazard of a pair is at the present instant is none.
+    pub fn bad_hazard(
+        &mut self,
+        transition: &TransitionSystem,
+        (slots, own): (&Slots, &[usize]),
+        hazard: f64,
+    ) -> Failure {
+        let Trigger::Chance { rate, .. } = transition.trigger else { unreachable!("of pairs only") };
+        let blame = self.blame(rate, &transition.frame, slots, own);
+        let (place, label) = (self.place(slots[0]), transition.label.clone());
+        Reason::BadHazard { place, label, hazard, blame, span: transition.span }.into()
     }
 }

@@ -156,6 +156,9 @@ impl Engine<'_, '_> {
 
     /// Has an agent run ahead alone, if its flow lets it. False if not.
     fn freeze(&mut self, agent: usize) -> bool {
+        if self.is_exposed(agent) {
+            return false;
+        }
         let row = &self.agents.agents[agent];
         let group = &mut self.groups.groups[row.group];
         if self.stepper.is_stiff(agent, row.mode)

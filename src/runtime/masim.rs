@@ -47,6 +47,7 @@ impl Engine<'_, '_> {
             }
             let cover = self.cover().min(until);
             self.certify_up_to(cover);
+            self.expose_up_to(cover)?;
             if self.interrupted() {
                 // Tables are complete up to there.
                 let told = self.recorder.next().min(self.next_step()).max(self.present.time);
@@ -123,7 +124,8 @@ impl Engine<'_, '_> {
     /// Up to when nothing happens that has not been carried out, s; not beyond the cover.
     fn known_until(&mut self, cover: f64) -> f64 {
         let certified = self.queues.uncertified.peek().map_or(f64::INFINITY, |due| due.time);
-        cover.min(certified).min(self.next_cause()).max(self.present.time)
+        let exposed = self.queues.exposed.peek().map_or(f64::INFINITY, |due| due.time);
+        cover.min(certified).min(exposed).min(self.next_cause()).max(self.present.time)
     }
 
     /// The end: the last rows, and the state of every agent at T (rule 12).

@@ -66,6 +66,11 @@ impl Present {
         self.rows[place] = Rows::default();
     }
 
+    /// Makes room for as many agents.
+    pub fn make_room(&mut self, n_agents: usize) {
+        self.rows.resize(n_agents, Rows::default());
+    }
+
     /// Moves to another time.
     pub fn go(&mut self, time: f64) {
         if time != self.time {

@@ -44,8 +44,15 @@ pub fn truth(reader: &mut Reader, guard: &Guard, condition: &Condition) -> Truth
             truths.max().unwrap_or(Truth::Never)
         }
         // There may be nobody to ask.
-        Condition::Exists(quantified) => truth(reader, guard, &quantified.body).min(Truth::Maybe),
-        Condition::Forall(quantified) => truth(reader, guard, &quantified.body).max(Truth::Maybe),
+        // Not `min` and `max`: behind a recursive call in the tail position rustc 1.95 takes them away.
+        Condition::Exists(quantified) => match truth(reader, guard, &quantified.body) {
+            Truth::Never => Truth::Never,
+            Truth::Maybe | Truth::Always => Truth::Maybe,
+        },
+        Condition::Forall(quantified) => match truth(reader, guard, &quantified.body) {
+            Truth::Never | Truth::Maybe => Truth::Maybe,
+            Truth::Always => Truth::Always,
+        },
         Condition::Rising(_, inner) => match truth(reader, guard, inner) {
             Truth::Never | Truth::Always => Truth::Never,
             Truth::Maybe => Truth::Maybe,

@@ -63,11 +63,14 @@ pub enum Trigger {
         /// Written to the gate of the hazard. None: true.
         guard: Option<Guard>,
     },
-    /// Of an interaction: after a time drawn from the exponential distribution of this rate (one output, 1/s, constant between
-    /// writes), drawn anew whenever the guard becomes true, the rate changes, or it has fired.
+    /// Of an interaction, of this hazard (one output, 1/s). Where it is constant between writes: after a time drawn from the exponential
+    /// distribution of this rate, drawn anew whenever the guard becomes true, the rate changes, or it has fired. Where it flows: as a
+    /// `Rate`, but what is left is a state of nobody.
     Chance {
         /// 1/s.
         rate: FunctionId,
+        /// Whether it may change while nothing is written.
+        flows: bool,
         /// None: true.
         guard: Option<Guard>,
     },

@@ -6,8 +6,6 @@ use crate::base::{Diagnostic, Span};
 pub(in crate::model) enum InteractionError {
     /// Not between two.
     Participants { count: usize, span: Span },
-    /// A rate that changes along the flow.
-    FlowingRate { rate: Span, span: Span },
     /// It listens.
     Hears { span: Span },
 }
@@ -27,16 +25,6 @@ impl From<InteractionError> for Diagnostic {
                 Diagnostic::error("HY0206", format!("an interaction has two participants, not {count}"))
                     .label(span, label)
                     .help(help)
-            }
-            InteractionError::FlowingRate { rate, span } => {
-                let diagnostic = Diagnostic::error(
-                    "HY0200",
-                    "the rate of an interaction changes by events only, never along the flow",
-                )
-                .label(span, "this changes while nothing happens");
-                let diagnostic = if rate == span { diagnostic } else { diagnostic.label(rate, "the rate") };
-                diagnostic
-                    .help("write when the two are exposed, as a guard: `rate beta when (a.x - b.x)^2 <= r^2`")
             }
             InteractionError::Hears { span } => {
                 Diagnostic::error("HY0218", "an interaction hears no events: `on` belongs to an agent")

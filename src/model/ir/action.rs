@@ -51,6 +51,8 @@ pub enum Trigger {
         guard: Option<ExprId>,
         /// What has to hold: that the hazard is not negative where the guard is true.
         claim: ExprId,
+        /// Whether it may change while nothing is written: it reads a state, a rate, the time or a set.
+        flows: bool,
     },
     /// `on event (from sender) (when guard)`.
     On {

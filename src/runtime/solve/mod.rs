@@ -17,6 +17,7 @@ mod shifted;
 mod rodas5p;
 pub mod switch;
 pub mod integrate;
+pub mod quadrature;
 mod bracket;
 mod curve;
 pub mod roots;

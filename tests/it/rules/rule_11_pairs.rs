@@ -1,6 +1,8 @@
 //! Rule 11: the hazard of a pair, `rate` in an interaction.
 
-use crate::harness::{Case, Run, all_near, near, refused, simulate_error, simulate_to_the_end};
+use hyc::model::ir::Integrator;
+
+use crate::harness::{Case, Run, all_near, integral, near, refused, simulate_error, simulate_to_the_end};
 
 fn meetings(run: &Run, pair: [&str; 2]) -> Vec<f64> {
     let of_pair = |event: &&crate::harness::Fired| event.agent == pair[0] && event.other == pair[1];
@@ -100,23 +102,156 @@ fn rule_11_a_written_rate_is_drawn_anew_and_those_who_are_born_take_part() {
     assert!(new.len() > 2 && new.iter().all(|&time| (3.0..=4.0).contains(&time)), "{new:?}");
 }
 
-#[test]
-fn rule_11_the_rate_of_a_pair_is_a_number_that_only_events_change() {
-    let with = |rate: &str| {
+/// A model of pairs whose rate is `rate`, and of the same pairs with rate 1: the times of those are the sums of the draws.
+fn with_rate(agents: &str, rate: &str, rest: &str) -> [String; 2] {
+    [rate, "1 [1/s]"].map(|rate| {
         format!(
-            "agent A {{ state x = 0  discrete k = 1, n: int = 0  flow {{ x' = 1 }}  when x >= 1 {{ k := -1 }} }}
-             interaction Meet(a: A, b: A) {{ meet: rate {rate} {{ a.n := 1  b.n := 1 }} }}
-             system {{ all = A[2]() }}
-             run {{ until 2 }}"
+            "{agents} interaction Meet(a: A, b: A) {{ meet: rate {rate} {{ a.n := a.n + 1  b.n := b.n + 1 }} }} {rest}"
+        )
+    })
+}
+
+/// Whether the integrals of a hazard up to the times at which a pair fires are the sums of its draws. It may jump at `jumps`, rising.
+fn integrals_are_draws(
+    times: &[f64],
+    draws: &[f64],
+    hazard: impl Fn(f64) -> f64,
+    jumps: &[f64],
+    tolerance: f64,
+) {
+    assert!(times.len() > 8 && times.len() <= draws.len(), "{} of {}", times.len(), draws.len());
+    let (mut spent, mut last) = (0.0, 0.0);
+    for (&time, &draw) in times.iter().zip(draws) {
+        let inside = jumps.iter().copied().filter(|&jump| last < jump && jump < time);
+        for end in inside.chain([time]).collect::<Vec<_>>() {
+            // on the sides of its jumps that are its own
+            let margin = 1e-9 * (end - last);
+            spent += integral(&hazard, last + margin, end - margin);
+            last = end;
+        }
+        near(spent, draw, tolerance);
+    }
+}
+
+#[test]
+fn rule_11_the_hazard_of_a_pair_is_integrated_with_the_flow() {
+    let agents = "agent A(w: real) { state x = 0  discrete n: int = 0  flow { x' = w*cos(w*time) } }";
+    let [flowing, constant] = with_rate(
+        agents,
+        "3*(a.x - b.x)^2",
+        "system { a = A(w = 1)  b = A(w = 2)  c = A(w = 3) }  run { until 40  seed 5  tolerance 1e-10 }",
+    );
+    let run = simulate_to_the_end(&flowing);
+    let draws = simulate_to_the_end(&constant);
+    for (pair, [v, w]) in [(["a", "b"], [1.0, 2.0]), (["a", "c"], [1.0, 3.0]), (["b", "c"], [2.0, 3.0])] {
+        let hazard = |t: f64| 3.0 * ((v * t).sin() - (w * t).sin()).powi(2);
+        let draws = meetings(&Case::new(&constant).until(400.0).run(), pair);
+        integrals_are_draws(&meetings(&run, pair), &draws, hazard, &[], 1e-6);
+    }
+    assert!(draws.events.len() > 60);
+    for integrator in [Integrator::Tsit5, Integrator::Adams, Integrator::Stiff] {
+        let other = Case::new(&flowing).integrator(integrator).run();
+        // a time at which the hazard is next to nothing is known as little as it
+        all_near(&other.event_times(), &run.event_times(), 1e-5);
+    }
+}
+
+/// What is left of a hazard is kept over writes of the two, and while the guard is false.
+#[test]
+fn rule_11_what_is_left_of_the_hazard_of_a_pair_survives_writes_and_closed_guards() {
+    let agents = "agent A {
+        state x = 0  discrete n: int = 0, k = 1  flow { x' = 1 }
+        back: when x >= 1 { x := 0 }
+        turn: every 0.3 { k := 3 - k } }";
+    let [flowing, constant] = with_rate(
+        agents,
+        "4*a.k*a.x*(1 + b.x) when a.x <= 0.5 or a.x >= 0.75",
+        "system { all = A[2]() }  run { until 60  seed 8 }",
+    );
+    let run = simulate_to_the_end(&flowing);
+    let draws = Case::new(&constant).until(1000.0).run();
+    let hazard = |t: f64| {
+        let (x, k) = (t.fract(), if (t / 0.3).floor() % 2.0 == 0.0 { 1.0 } else { 2.0 });
+        if x <= 0.5 || x >= 0.75 { 4.0 * k * x * (1.0 + x) } else { 0.0 }
+    };
+    let pair = ["all[0]", "all[1]"];
+    let mut jumps: Vec<f64> = (0..200).map(|k| 0.3 * f64::from(k)).collect();
+    jumps.extend((0..60).flat_map(|k| [0.5, 0.75, 1.0].map(|part| f64::from(k) + part)));
+    jumps.sort_by(f64::total_cmp);
+    integrals_are_draws(&meetings(&run, pair), &meetings(&draws, pair), hazard, &jumps, 1e-4);
+    let inside =
+        meetings(&run, pair).iter().filter(|t| (0.5 + 1e-9..0.75 - 1e-9).contains(&t.fract())).count();
+    assert_eq!(inside, 0);
+}
+
+#[test]
+fn rule_11_the_hazard_of_a_pair_may_read_the_time_links_and_sets() {
+    let agents = "agent L { state y = 0  flow { y' = 1 }  when y >= 2 { y := 1 } }
+        agent A(w: real) { state x = 0  discrete n: int = 0  link leader: L  flow { x' = w } }";
+    let rest =
+        "system { l = L()  a = A(w = 1, leader = l)  b = A(w = 2, leader = l) }  run { until 5  seed 1 }";
+    let y = |t: f64| if t < 2.0 { t } else { 1.0 + t.fract() };
+    let cases: [(&str, &dyn Fn(f64) -> f64); 4] = [
+        ("10*time", &|t| 10.0 * t),
+        ("if time < 1 then 20 else 5", &|t| if t < 1.0 { 20.0 } else { 5.0 }),
+        ("8*(if a.leader then a.leader.y else 0)", &|t| 8.0 * y(t)),
+        ("4*(count o in A where o.x > 3) + 4*(sum o in L: o.y)", &|t| {
+            4.0 * (f64::from(u8::from(t > 3.0)) + f64::from(u8::from(2.0 * t > 3.0))) + 4.0 * y(t)
+        }),
+    ];
+    for (rate, hazard) in cases {
+        let [flowing, constant] = with_rate(agents, rate, rest);
+        let run = simulate_to_the_end(&flowing);
+        let draws = Case::new(&constant).until(400.0).run();
+        integrals_are_draws(
+            &meetings(&run, ["a", "b"]),
+            &meetings(&draws, ["a", "b"]),
+            hazard,
+            &[1.0, 1.5, 2.0, 3.0, 4.0],
+            1e-4,
+        );
+    }
+}
+
+#[test]
+fn rule_11_hazards_of_pairs_that_flow_follow_those_who_come_and_go() {
+    let run = simulate_to_the_end(
+        "agent A { state x = 0  discrete n: int = 0  flow { x' = 1 }  after 6 { destroy self } }
+         agent Maker { every 1 { create A() } }
+         interaction Meet(a: A, b: A) { meet: rate 0.3*abs(a.x - b.x) { a.n := a.n + 1  b.n := b.n + 1 } }
+         system { maker = Maker() }
+         run { until 30  seed 2 }",
+    );
+    // at most six are there: the sum over pairs of 0.3 |i - j| is 10.5 in full strength, from 6 s on
+    near(run.times("Meet.meet").len() as f64, 10.5 * 25.0, 70.0);
+}
+
+/// The hazard would be negative from 2 s on; an event before that ends it.
+#[test]
+fn rule_11_the_hazard_of_a_pair_is_not_negative() {
+    let text = |event: &str| {
+        format!(
+            "agent A {{ state x = 0  discrete n: int = 0  flow {{ x' = 1 }}  {event} }}
+             interaction Meet(a: A, b: A) {{ meet: rate 0.001*(2 - a.x) {{ a.n := 1 }} }}
+             system {{ all = A[2]() }}  run {{ until 3 }}"
         )
     };
-    for rate in ["a.x", "if a.x > 1 then 1 else 2", "time", "1 + (count o in A where o.x > 1)"] {
-        let told = refused(&with(rate));
-        assert!(told.contains("HY0200"), "{rate}: {told}");
-    }
-    assert!(refused(&with("-1")).contains("HY0219"));
-    let (run, failed) = simulate_error(&with("0.001*a.k"));
+    let (run, failed) = simulate_error(&text(""));
+    assert_eq!(failed.code, "HY0514", "{failed:?}");
+    near(run.time, 2.0, 1e-9);
+    simulate_to_the_end(&text("when x >= 1.99999 { x := 0 }"));
+    let (run, failed) = simulate_error(
+        "agent A { state x = 0  discrete k = 1, n: int = 0  flow { x' = 1 }  when x >= 1 { k := -1 } }
+         interaction Meet(a: A, b: A) { meet: rate 0.001*a.k { a.n := 1  b.n := 1 } }
+         system { all = A[2]() }  run { until 2 }",
+    );
     assert_eq!((failed.code, run.time), ("HY0514", 1.0), "{failed:?}");
+    assert!(
+        refused(
+            "agent A { } interaction M(a: A, b: A) { m: rate -1 { } } system { all = A[2]() } run { until 2 }"
+        )
+        .contains("HY0219")
+    );
 }
 
 #[test]

@@ -1,0 +1,198 @@
+//! Rule 11, of pairs: what is left of the hazard of an interaction whose rate changes along the flow.
+//!
+//! No agent has a state for it. A pair is *exposed* while its guard is true; then the hazard is integrated on the dense output of whom
+//! it reads, by quadrature, up to the clock of the one that lags most, as a comparison is certified. What is found ahead is void
+//! when one of them is written: before that, the hazard is taken away up to the instant.
+
+use crate::codegen::program::{TransitionSystem, Trigger};
+use crate::runtime::engine::{Due, Engine};
+use crate::runtime::exposed::Exposure;
+use crate::runtime::failure::Failure;
+use crate::runtime::guards::Origin;
+use crate::runtime::population::ABSENT;
+use crate::runtime::present::Present;
+use crate::runtime::solve::quadrature::{Spent, spend};
+use crate::runtime::solve::{scheduled, time_resolution};
+use crate::runtime::truth;
+
+/// The share of the tolerance of the run to which an integral over a stretch is known.
+const SHARE: f64 = 1e-3;
+
+impl Engine<'_, '_> {
+    /// A pair has become exposed or is so no more; its guard, its arming or what has fired may be the reason. `open`: whether its guard is
+    /// true just after the instant.
+    pub fn set_exposure(&mut self, instance: u32, transition: &TransitionSystem, open: bool) {
+        let is_new = self.guards.instances[instance as usize].delay.is_nan();
+        if is_new {
+            let left = self.draw_for_pair(instance, transition, 1.0);
+            self.guards.instances[instance as usize].delay = left;
+            self.exposures.of.remove(&instance);
+        } else {
+            self.catch_up(instance);
+        }
+        let is_exposed = self.exposure(instance).is_some();
+        let state = &mut self.guards.instances[instance as usize];
+        if open && !is_exposed {
+            state.arming += 1;
+            let (arming, left, now) = (state.arming, state.delay, self.present.time);
+            let exposure = Exposure::beginning(arming, now, left);
+            self.exposures.of.insert(instance, exposure);
+            self.queues.exposed.push(Due { time: now, number: instance, version: arming });
+            self.exposures.are_wide |= self.is_wide(instance);
+        } else if !open && let Some(exposure) = self.exposures.of.remove(&instance) {
+            state.arming += 1;
+            state.delay = exposure.left;
+        }
+    }
+
+    /// Whether the hazard of a pair reads more agents than the two.
+    fn is_wide(&self, instance: u32) -> bool {
+        let frame = self.guards.definition(instance).frame;
+        frame.slots.len() > 2 || !frame.folds.is_empty()
+    }
+
+    fn exposure(&self, instance: u32) -> Option<&Exposure> {
+        let arming = self.guards.instances[instance as usize].arming;
+        self.exposures.of.get(&instance).filter(|exposure| exposure.arming == arming)
+    }
+
+    /// Whether a hazard that flows reads an agent now: then it takes its steps in turn.
+    pub fn is_exposed(&self, agent: usize) -> bool {
+        let of_agent =
+            || self.guards.of_agent[agent].iter().any(|&instance| self.exposure(instance).is_some());
+        !self.exposures.of.is_empty() && (self.exposures.are_wide || of_agent())
+    }
+
+    /// Takes hazards away up to the present that read an agent, who is about to be written or to follow another way.
+    pub fn catch_up_with(&mut self, agent: usize) {
+        if self.exposures.of.is_empty() || self.exposures.are_wide {
+            return;
+        }
+        for k in 0..self.guards.of_agent[agent].len() {
+            self.catch_up(self.guards.of_agent[agent][k]);
+        }
+    }
+
+    /// The same for all, at the begin of an instant, if a hazard reads more agents than its two: their sets and links may change.
+    pub fn catch_up_with_all(&mut self) {
+        if self.exposures.are_wide {
+            let all: Vec<u32> = self.exposures.of.keys().copied().collect();
+            all.into_iter().for_each(|instance| self.catch_up(instance));
+        }
+    }
+
+    /// Takes the hazard of a pair away up to the present; what is known of it beyond is void.
+    fn catch_up(&mut self, instance: u32) {
+        let now = self.present.time;
+        // What is due now has been collected, and fires in this instant.
+        let Some(&exposure) = self.exposure(instance).filter(|exposure| exposure.due != Some(now)) else {
+            return;
+        };
+        let left = match self.spend(instance, (exposure.since, now), exposure.left) {
+            Spent::Left(left) => left,
+            Spent::At(_) => 0.0,
+            Spent::Undefined(..) => exposure.left,
+        };
+        let state = &mut self.guards.instances[instance as usize];
+        state.arming += 1;
+        let arming = state.arming;
+        self.exposures.of.insert(instance, Exposure::beginning(arming, now, left));
+        self.queues.exposed.push(Due { time: now, number: instance, version: arming });
+    }
+
+    /// Follows the hazards of all exposed pairs up to the cover at least.
+    pub fn expose_up_to(&mut self, cover: f64) -> Result<(), Failure> {
+        while let Some(&due) = self.queues.exposed.peek() {
+            if due.time >= self.enough(cover) || self.interrupted() {
+                return Ok(());
+            }
+            self.queues.exposed.pop();
+            let valid = self.exposure(due.number).filter(|exposure| exposure.arming == due.version);
+            let Some(&Exposure { undefined, .. }) = valid else { continue };
+            if let Some(hazard) = undefined {
+                if self.next_cause() > due.time {
+                    return Err(self.no_hazard(due, hazard));
+                }
+                // What comes before may end it.
+                self.queues.exposed.push(due);
+                return Ok(());
+            }
+            self.expose(due);
+            if self.has_thawed {
+                self.queues.exposed.push(due);
+                return Ok(());
+            }
+        }
+        Ok(())
+    }
+
+    /// Follows the hazard of a pair from where it is known on.
+    fn expose(&mut self, due: Due) {
+        let Due { time: from, number: instance, version: arming } = due;
+        let slots = self.guards.slots(&self.agents, instance);
+        let mut to = if self.is_wide(instance) { self.cover() } else { f64::INFINITY };
+        for &agent in slots.iter().filter(|&&agent| agent != ABSENT) {
+            self.thaw_at(agent, from);
+            to = to.min(self.groups.groups[self.agents.agents[agent].group].clock);
+        }
+        if to == f64::INFINITY {
+            // Nothing but the time flows: a stretch at a time.
+            to = from + from.max(1.0);
+        }
+        let to = to.min(self.time_end);
+        let Some(left) = self.exposure(instance).map(|exposure| exposure.rest) else { return };
+        if self.has_thawed || to <= from {
+            return;
+        }
+        let mut ahead = Exposure { known: to, ..Exposure::beginning(arming, from, left) };
+        match self.spend(instance, (from, to), left) {
+            Spent::Left(rest) => ahead.rest = rest,
+            Spent::At(time) => {
+                let time = scheduled(time, self.time_end);
+                (ahead.known, ahead.due) = (f64::INFINITY, Some(time));
+                self.queues.schedules.push(Due { time, number: instance, version: arming });
+            }
+            Spent::Undefined(time, hazard) => (ahead.known, ahead.undefined) = (time, Some(hazard)),
+        }
+        self.exposures.of.insert(instance, ahead);
+        if ahead.known < self.time_end {
+            self.queues.exposed.push(Due { time: ahead.known, ..due });
+        }
+    }
+
+    /// Takes the hazard of a pair over a stretch, on which its agents are known, away from `left`.
+    fn spend(&mut self, instance: u32, (from, to): (f64, f64), left: f64) -> Spent {
+        let Origin::Pair(pair) = self.guards.definition(instance).origin else { return Spent::Left(left) };
+        let Trigger::Chance { rate, .. } = pair.transition.trigger else { return Spent::Left(left) };
+        if to <= from {
+            return Spent::Left(left);
+        }
+        let (slots, own) = (self.guards.slots(&self.agents, instance), self.guards.roots(instance));
+        let mut rows = self.exposures.rows.take().unwrap_or_else(|| Present::new(&self.agents));
+        rows.make_room(self.agents.len());
+        rows.forget();
+        let mut n_values = 0;
+        let mut hazard = |time: f64| {
+            n_values += 1;
+            rows.go(time);
+            truth::value(&self.agents, &mut rows, rate, &pair.transition.frame, &slots, &own)
+        };
+        let accuracy = SHARE * self.program.run.tolerance.min(1e-3);
+        let spent = spend(&mut hazard, (from, to), left, accuracy, time_resolution(to));
+        self.curves.evaluations += n_values;
+        self.curves.operations += n_values * self.program.kernel(rate).operations();
+        self.exposures.rows = Some(rows);
+        spent
+    }
+
+    /// The hazard of a pair is negative or not finite from here on.
+    fn no_hazard(&mut self, due: Due, hazard: f64) -> Failure {
+        self.present.go(due.time);
+        let instance = due.number;
+        let (slots, own) = (self.guards.slots(&self.agents, instance), self.guards.roots(instance));
+        let Origin::Pair(pair) = self.guards.definition(instance).origin else {
+            unreachable!("only pairs are exposed")
+        };
+        self.bad_hazard(&pair.transition, (&slots, &own), hazard)
+    }
+}
