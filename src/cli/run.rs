@@ -31,9 +31,6 @@ use crate::picture::{Scene, page};
 use crate::runtime::observe::{End, Outcome};
 use crate::runtime::{self, Algorithm};
 
-/// How many of the agents with most events are told.
-const BUSIEST: usize = 8;
-
 /// Set by the user's interruption.
 pub(super) static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
@@ -92,10 +89,10 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     let flushed = tables.finish();
     let run_seconds = begun.elapsed().as_secs_f64();
     let writing_seconds = tables.writing().as_secs_f64().min(run_seconds);
-    let busiest = tables.busiest(BUSIEST);
     drop(tables);
-    let named = |&(who, steps): &(_, u64)| (cast.agent(who).into_owned(), steps);
-    let slowest: Vec<(String, u64)> = outcome.stats.slowest.iter().map(named).collect();
+    let named = |&(who, count): &(_, u64)| (cast.agent(who).into_owned(), count);
+    let [slowest, busiest]: [Vec<(String, u64)>; 2] =
+        [&outcome.stats.slowest, &outcome.stats.busiest].map(|most| most.iter().map(named).collect());
     let (functions, code_bytes) = program.machine_code();
     let mut report = Report {
         model: &name_of(&arguments.model),

@@ -1,6 +1,5 @@
 //! All tables of a run as one observer; each is there only if it is asked for.
 
-use std::collections::BTreeMap;
 use std::io;
 use std::time::{Duration, Instant};
 
@@ -12,7 +11,7 @@ use super::final_states::FinalStates;
 use super::table::Sink;
 use super::trajectory::Trajectory;
 use crate::base::SourceMap;
-use crate::runtime::observe::{Event, Explanation, Last, Observer, Progress, Row, Undecided, Who};
+use crate::runtime::observe::{Event, Explanation, Last, Observer, Progress, Row, Undecided};
 
 /// How long what has been told may wait before it is in the files.
 const WAIT: Duration = Duration::from_secs(1);
@@ -32,8 +31,6 @@ pub struct Tables<'a> {
     /// Rows so far, and the time that making them took, as those say that were timed.
     rows: u64,
     making: Duration,
-    /// Events of each agent.
-    events: BTreeMap<Who, u64>,
 }
 
 impl<'a> Tables<'a> {
@@ -50,7 +47,6 @@ impl<'a> Tables<'a> {
             flushed: Instant::now(),
             rows: 0,
             making: Duration::ZERO,
-            events: BTreeMap::new(),
         }
     }
 
@@ -97,14 +93,6 @@ impl<'a> Tables<'a> {
         results.into_iter().collect()
     }
 
-    /// Who had most events, and how many; among equals, in the order of their numbers.
-    pub fn busiest(&self, n: usize) -> Vec<(String, u64)> {
-        let mut counts: Vec<_> = self.events.iter().map(|(&agent, &count)| (agent, count)).collect();
-        counts.sort_by_key(|&(agent, count)| (std::cmp::Reverse(count), agent));
-        counts.truncate(n);
-        counts.into_iter().map(|(agent, count)| (self.cast.agent(agent).into_owned(), count)).collect()
-    }
-
     /// How long writing took: about, as to the making of rows, of which some are timed; to the point, as to handing them on.
     pub fn writing(&self) -> Duration {
         self.making + self.handing()
@@ -143,11 +131,6 @@ impl Observer for Tables<'_> {
     fn event(&mut self, event: &Event<'_>) -> io::Result<()> {
         if let Some(also) = &mut self.also {
             also.event(event)?;
-        }
-        // One firing is one event, however many rows it has.
-        let agents = if event.row == 0 { [Some(event.agent), event.other] } else { [None; 2] };
-        for agent in agents.into_iter().flatten() {
-            *self.events.entry(agent).or_default() += 1;
         }
         if self.event_log.is_none() {
             return Ok(());

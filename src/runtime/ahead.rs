@@ -6,6 +6,7 @@
 
 use std::collections::VecDeque;
 
+use crate::runtime::solve::leads_on;
 use crate::runtime::solve::segment::Segment;
 
 /// One step beyond the clock.
@@ -61,7 +62,7 @@ impl Ahead {
 
     /// The number of the step on which the way leads on from `t`.
     pub fn leading_from(&self, t: f64) -> Option<usize> {
-        self.0.as_ref()?.iter().position(|way| t < way.segment.end)
+        self.0.as_ref()?.iter().position(|way| leads_on(t, way.segment.end))
     }
 
     /// A step by its number.

@@ -2,7 +2,7 @@
 use smallvec::SmallVec;
 
 use crate::codegen::program::{Atom, Relation};
-use crate::runtime::atom_state::{Leap, closed};
+use crate::runtime::atom_state::{AtomState, Leap, closed};
 use crate::runtime::branches::{Jumping, width};
 use crate::runtime::detect::AtomCurve;
 use crate::runtime::engine::{Due, Engine};
@@ -105,7 +105,9 @@ impl Engine<'_, '_> {
             self.certified(index, until);
             return;
         }
-        if !blocked && self.is_clear(index, (from, to)) {
+        // At a kink the flow may turn back from a boundary that it reaches there.
+        let touches = may_touch(atom, &self.guards.atoms[index]) && self.ends_at_kink(&slots, to);
+        if !blocked && !touches && self.is_clear(index, (from, to)) {
             self.certified(index, to);
             return;
         }
@@ -117,7 +119,7 @@ impl Engine<'_, '_> {
             settled: state.settled,
             grazed: state.grazed == from,
             joins: !state.settled && state.slack == 0.0,
-            reach: if blocked { time_resolution(to) } else { 2.0 * ulp(to) },
+            reach: if blocked || touches { time_resolution(to) } else { 2.0 * ulp(to) },
         };
         let (search, leap) = self.search(atom, (&slots, &folds), from, to, known);
         let end = match &search {
@@ -305,4 +307,9 @@ impl Engine<'_, '_> {
             }
         }
     }
+}
+
+/// Whether a comparison is false and becomes true where it comes to zero.
+pub fn may_touch(atom: &Atom, state: &AtomState) -> bool {
+    atom.relation == Relation::NonPositive && atom.jumps.is_none() && !state.truth
 }

@@ -19,6 +19,7 @@ use crate::runtime::groups::{Coupling, Groups};
 use crate::runtime::guards::{Guards, Listing, Origin, TooManyGuards};
 use crate::runtime::limits::Limits;
 use crate::runtime::mail::Mail;
+use crate::runtime::most::Most;
 use crate::runtime::neighbours::Neighbours;
 use crate::runtime::notes::Notes;
 use crate::runtime::observe::{Cell, End, FalseAssert, Last, Observer, Outcome, Stats, TypeStats, Who};
@@ -28,7 +29,7 @@ use crate::runtime::present::{Depth, Present};
 use crate::runtime::reach::Reaches;
 use crate::runtime::record::Recorder;
 use crate::runtime::repetition::Repetitions;
-use crate::runtime::slowest::Slowest;
+
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::{MethodName, Methods};
 use crate::runtime::verdicts::Monitors;
@@ -159,7 +160,9 @@ pub struct Engine<'p, 'o> {
     pub exposures: Exposures,
     /// Makes rows of trajectories.
     pub recorder: Recorder<'p>,
-    pub slowest: Slowest,
+    pub slowest: Most,
+    /// Who has had most events.
+    pub busiest: Most,
     /// Watches for Zeno behaviour and chattering.
     pub repetitions: Repetitions,
     /// Who is told.
@@ -176,6 +179,8 @@ pub struct Engine<'p, 'o> {
     pub firings: Vec<u64>,
     /// Events of each agent type.
     pub events_of_type: Vec<u64>,
+    /// The same of each agent, by its place.
+    pub events_of: Vec<u64>,
     /// Segments cut by events.
     pub n_cuts: u64,
     /// Roots neither excluded nor isolated.
@@ -245,7 +250,9 @@ impl<'p, 'o> Engine<'p, 'o> {
             window_end: f64::INFINITY,
             has_thawed: false,
             recorder: Recorder::new(program, time_end),
-            slowest: Slowest::default(),
+            slowest: Most::default(),
+            busiest: Most::default(),
+            events_of: vec![0; agents.len()],
             repetitions: Repetitions::new(limits),
             groups: Groups::new(coupling),
             points: Vec::new(),
@@ -324,15 +331,25 @@ impl<'p, 'o> Engine<'p, 'o> {
         Ok(())
     }
 
-    /// Takes note of how many steps an agent has taken, which takes no more.
-    pub fn note_steps(&mut self, agent: usize) {
+    /// Takes note of how many steps and events an agent has had, which will have no more.
+    pub fn note_counts(&mut self, agent: usize) {
         let steps = self.stepper.counts.steps_of[agent] + self.agents.cold.steps_of(agent);
         self.slowest.note(self.agents.who(agent), steps);
+        let events = self.events_of.get_mut(agent).map_or(0, std::mem::take);
+        self.busiest.note(self.agents.who(agent), events);
+    }
+
+    /// Counts an event of an agent.
+    pub fn count_event(&mut self, agent: usize) {
+        if self.events_of.len() <= agent {
+            self.events_of.resize(agent + 1, 0);
+        }
+        self.events_of[agent] += 1;
     }
 
     /// What the run came to.
     pub fn outcome(mut self, end: End) -> Outcome {
-        self.agents.living().into_iter().for_each(|agent| self.note_steps(agent));
+        self.agents.living().into_iter().for_each(|agent| self.note_counts(agent));
         let counts = &self.stepper.counts;
         let hidden = self.program.watcher();
         let types = self.program.types.iter().enumerate().filter(|(ty, _)| Some(*ty) != hidden);
@@ -379,6 +396,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             misses: None,
             types: types.collect(),
             slowest: self.slowest.told(),
+            busiest: self.busiest.told(),
             transitions: labels.collect(),
             methods: methods.collect(),
         };

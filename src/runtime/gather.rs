@@ -8,6 +8,7 @@ use crate::runtime::engine::{Due, Engine};
 use crate::runtime::failure::Failure;
 use crate::runtime::guards::Origin;
 use crate::runtime::instant::{By, Candidate};
+use crate::runtime::population::ABSENT;
 use crate::runtime::present::Depth;
 use crate::runtime::solve::roots::Curve;
 use crate::runtime::solve::time_resolution;
@@ -83,6 +84,7 @@ impl Engine<'_, '_> {
         }
         if !is_scheduled {
             time = self.defined_side(time, near, &changed);
+            time = self.after_turns(time, window, &changed);
         }
         self.present.go(time);
         let mut concerned: Vec<u32> = Vec::new();
@@ -230,6 +232,19 @@ impl Engine<'_, '_> {
             })
         };
         if !defined(time) && defined(near) { near } else { time }
+    }
+
+    /// Roots that were found just before a kink, beyond which their flows have turned by now, are at the kink: what the flow of one side
+    /// says of the other is wrong by rounding. None is moved beyond anything else that is due.
+    fn after_turns(&mut self, time: f64, window: f64, changed: &[(usize, f64)]) -> f64 {
+        let mut latest = time;
+        for &(index, _) in changed {
+            let (atom, slots) = self.guards.atom_slots(&self.agents, index);
+            let read = atom.slots.iter().map(|&slot| slots[slot]).filter(|&agent| agent != ABSENT);
+            let starts = read.map(|agent| self.agents.agents[agent].segment.start);
+            latest = starts.filter(|&start| start <= window).fold(latest, f64::max);
+        }
+        if latest < self.next_cause() { latest } else { time }
     }
 
     /// Changes the truth of an atom at the present instant. Its root may lie a little later; it is certified from there on.

@@ -304,6 +304,8 @@ impl Engine<'_, '_> {
         self.firings[definition] += 1;
         self.n_events += 1;
         self.events_of_type[ty] += 1;
+        let n_participants = if pair { 2 } else { 1 };
+        ranked.slots[..n_participants].iter().for_each(|&agent| self.count_event(agent));
         let mut event = Event { time, micro, row: 0, transition: label, agent, other: sender, modes: None };
         if effect.moves.is_empty() {
             event.other = if pair { Some(self.agents.who(ranked.slots[1])) } else { sender };

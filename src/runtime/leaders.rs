@@ -12,6 +12,7 @@ use crate::runtime::detect::CurveRows;
 use crate::runtime::engine::Engine;
 use crate::runtime::groups::Group;
 use crate::runtime::population::Agents;
+use crate::runtime::solve::leads_on;
 use crate::runtime::solve::segment::Segment;
 
 impl Engine<'_, '_> {
@@ -21,7 +22,7 @@ impl Engine<'_, '_> {
         let mut first = number;
         loop {
             let group = &self.groups.groups[first];
-            let is_there = |&&leader: &&usize| self.agents.known_until(leader) <= group.clock;
+            let is_there = |&&leader: &&usize| !leads_on(group.clock, self.agents.known_until(leader));
             match group.leaders.iter().find(is_there) {
                 Some(&leader) => first = self.agents.agents[leader].group,
                 None => return first,
@@ -43,7 +44,7 @@ impl Engine<'_, '_> {
             let needed = from + group.integration.h.unwrap_or(0.0);
             let lags = |leader: usize| {
                 let known = self.agents.known_until(leader);
-                (known < needed || known <= from) && known < self.time_end
+                (known < needed || !leads_on(from, known)) && known < self.time_end
             };
             let of_leaders = group.leaders.iter().filter(|&&leader| lags(leader));
             let mut groups = of_leaders.map(|&leader| self.agents.agents[leader].group);
@@ -62,7 +63,7 @@ impl Engine<'_, '_> {
     fn run_ahead(&mut self, number: usize) -> bool {
         let group = &mut self.groups.groups[number];
         let from = self.agents.known_until(group.members[0]);
-        let is_beyond = |&leader: &usize| self.agents.known_until(leader) > from;
+        let is_beyond = |&leader: &usize| leads_on(from, self.agents.known_until(leader));
         if !group.kinks.is_empty() || !group.leaders.iter().all(is_beyond) {
             return false;
         }

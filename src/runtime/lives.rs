@@ -453,7 +453,7 @@ impl Engine<'_, '_> {
     /// Takes an agent out of everything but what [`Engine::strike_out`] sees to.
     fn remove(&mut self, agent: usize, written: &mut Written) {
         self.restart(agent, written);
-        self.note_steps(agent);
+        self.note_counts(agent);
         let ty = self.agents.agents[agent].ty;
         let number = self.agents.agents[agent].group;
         let group = &mut self.groups.groups[number];

@@ -8,8 +8,8 @@ use crate::base::Span;
 use crate::codegen::program::Kink;
 use crate::runtime::act::Written;
 use crate::runtime::advance::{Advance, Obstacle};
-use crate::runtime::certify::ENDLESS;
-use crate::runtime::engine::Engine;
+use crate::runtime::certify::{ENDLESS, may_touch};
+use crate::runtime::engine::{Due, Engine};
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::groups::KinkHit;
 use crate::runtime::guards::Origin;
@@ -186,6 +186,11 @@ impl Engine<'_, '_> {
                 self.present.forget();
                 for hit in &hits {
                     if let Finding::Zeno(_) = self.repetitions.turned(hit.agent, hit.kink, cover) {
+                        if self.touches_by(cover) {
+                            // What the flow reaches where it turns back may be what ends it.
+                            let cause = self.next_cause();
+                            return self.execute(cause);
+                        }
                         return Err(self.chattering(hit, cover).into());
                     }
                 }
@@ -197,6 +202,16 @@ impl Engine<'_, '_> {
             }
             Advance::Blocked(obstacle) => self.unblock(number, obstacle, cover),
         }
+    }
+
+    /// Whether what comes next comes up to `time`, and is that a comparison touches its boundary.
+    fn touches_by(&mut self, time: f64) -> bool {
+        let cause = self.next_cause();
+        let touches = |due: &Due| {
+            let (atom, _) = self.guards.atom_slots(&self.agents, due.number as usize);
+            may_touch(atom, &self.guards.atoms[due.number as usize])
+        };
+        cause <= time && self.queues.flips.peek().is_some_and(touches)
     }
 
     /// I5: no step is possible. An event within the resolution of time may be what ends this flow; else the run fails.

@@ -78,7 +78,7 @@ mod stiffness;
 mod repetition;
 mod mail;
 mod record;
-mod slowest;
+mod most;
 mod neighbours;
 mod robustness;
 mod signal;

@@ -364,6 +364,8 @@ pub struct Stats {
     pub types: Vec<TypeStats>,
     /// The agents that took most accepted steps, and how many.
     pub slowest: Vec<(Who, u64)>,
+    /// The agents with most events, their own and those of interactions, and how many.
+    pub busiest: Vec<(Who, u64)>,
     /// Per transition: label, firings.
     pub transitions: Vec<(String, u64)>,
     /// Per method of integration: its name, accepted steps.

@@ -14,6 +14,7 @@ use crate::runtime::ahead::Ahead;
 use crate::runtime::cold::Cold;
 use crate::runtime::observe::Who;
 use crate::runtime::route::{begin_histories, first};
+use crate::runtime::solve::leads_on;
 use crate::runtime::solve::segment::Segment;
 
 /// So many are looked up in the lists of their types one by one.
@@ -220,13 +221,13 @@ impl<'p> Agents<'p> {
     pub fn way_until(&self, agent: usize, t: f64) -> f64 {
         let agent = &self.agents[agent];
         let ways = std::iter::once(agent.segment.end).chain(agent.ahead.ends());
-        ways.into_iter().find(|&end| t < end).unwrap_or(t)
+        ways.into_iter().find(|&end| leads_on(t, end)).unwrap_or(t)
     }
 
     /// Which of the steps ahead of an agent leads on from `t`; none if it is its last step.
     pub fn way_from(&self, agent: usize, t: f64) -> Option<usize> {
         let agent = &self.agents[agent];
-        if t < agent.segment.end { None } else { agent.ahead.leading_from(t) }
+        if leads_on(t, agent.segment.end) { None } else { agent.ahead.leading_from(t) }
     }
 
     /// Exchanges the last segment of an agent for that of a step ahead.

@@ -1,7 +1,9 @@
 //! Chains of followers (rule 13): one whose leader does not read it integrates from the leader's dense output, on its own
 //! clock. What comes out is what one system of equations would say, and the cost of a car does not grow with the chain.
 
-use crate::harness::{Run, all_near, both_forms, near};
+use hyc::model::ir::Integrator;
+
+use crate::harness::{Case, Run, all_near, both_forms, near};
 
 /// Cars 0 to n - 1, each of which approaches the one before it: x_k' = x_(k-1) - x_k.
 fn filters(n: usize, rest: &str, until: f64) -> String {
@@ -42,6 +44,34 @@ fn crossing(k: usize, level: f64) -> f64 {
         if poisson(k, middle) < level { low = middle } else { high = middle }
     }
     low
+}
+
+/// With kinks that nobody meets: the steps of a follower end where those of its leader do, but for rounding.
+#[test]
+fn rule_13_followers_whose_flow_has_kinks_step_beside_their_leaders() {
+    let n = 8;
+    for kinked in ["min(input - x, 100)", "input - x + 0*max(time, -1)", "clamp(input - x, -8, 3)"] {
+        let text = filters(n, "half: when x >= 0.5 { up := 1 }", 20.0)
+            .replace("else input - x", &format!("else {kinked}"));
+        let expected: Vec<f64> = (1..n).map(|k| crossing(k, 0.5)).collect();
+        for integrator in [Integrator::Auto, Integrator::Tsit5, Integrator::Adams, Integrator::Stiff] {
+            for tolerance in [1e-4, 1e-6, 1e-9] {
+                let run = Case::new(&text).integrator(integrator).tolerance(tolerance).run();
+                let times: Vec<f64> = run.times("Low.half").split_off(1);
+                all_near(&times, &expected, 100.0 * tolerance);
+            }
+        }
+    }
+    // all from rest at the same time, behind links that the runtime finds
+    for start in ["-index", "-0.001*index", "-30*index"] {
+        let run = run(&format!(
+            "agent Car {{ link lead = nearest o in other Car where o.x > x by o.x - x
+               state x = {start}, v = 0
+               flow {{ x' = v  v' = if lead then clamp(0.3*(lead.x - x - 10 - v), -8, 3) else 1 }} }}
+             system {{ c = Car[5]() }}  run {{ until 10 }}"
+        ));
+        near(run.value("c[0].x"), 50.0, 1e-5);
+    }
 }
 
 #[test]

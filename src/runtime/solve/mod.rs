@@ -90,6 +90,11 @@ pub fn time_resolution(t: f64) -> f64 {
     (4.0 * ulp(t)).max(1e-12)
 }
 
+/// Whether what ends at `end` leads on from `t`: by more than the rounding of two ways to the same time, on which no step is possible.
+pub fn leads_on(t: f64, end: f64) -> bool {
+    end > t + 4.0 * ulp(t)
+}
+
 /// A time that is scheduled; the end of the run if it lies within 4 ulp of that (rule 11).
 pub fn scheduled(time: f64, end: f64) -> f64 {
     if (time - end).abs() <= 4.0 * ulp(end) { end } else { time }

@@ -3,7 +3,9 @@
 
 use std::f64::consts::PI;
 
-use crate::harness::{near, simulate, simulate_by_both_forms, simulate_error};
+use hyc::model::ir::Integrator;
+
+use crate::harness::{Case, all_near, near, simulate, simulate_by_both_forms, simulate_error};
 
 /// y(3.5) for y' = f(x), x = t, at a tolerance that by itself promises nothing.
 fn primitive(f: &str) -> f64 {
@@ -166,5 +168,60 @@ fn rule_15_a_flow_that_is_not_defined_beyond_its_branch_goes_on_at_the_kink() {
         ));
         // v falls from 1 to -3: both flows are -2 all along.
         near(run.value("b.x"), -1.0, 1e-6);
+    }
+}
+
+/// What the flow reaches at its kink it has reached, though it would turn back there: the transition leaves in time.
+#[test]
+fn rule_15_a_guard_on_a_kink_that_pushes_back_fires_there() {
+    let flows = ["if v < 1 then 1 else -1", "if v <= 1 then 1 else -1", "sign(1 - v)", "1 - 2*floor(v)"];
+    let guards = ["v >= 1", "not (v < 1)", "rising(v >= 1)", "v >= 1 and time > 0.5"];
+    for (flow, guard) in flows.iter().flat_map(|flow| guards.map(|guard| (flow, guard))) {
+        let text = format!(
+            "agent B {{ state v = 0
+               initial mode Slip {{ flow {{ v' = {flow} }}  stick: when {guard} -> Stick }}
+               mode Stick {{ flow {{ v' = 0 }} }} }}
+             agent Watch(b: B) {{ discrete n: int = 0  seen: when b.v >= 1 {{ n := n + 1 }} }}
+             system {{ b = B()  watch = Watch(b = b) }}  run {{ until 3 }}"
+        );
+        let run = simulate_by_both_forms(&text);
+        all_near(&run.times("B.stick"), &[1.0], 1e-12);
+        all_near(&run.times("Watch.seen"), &[1.0], 1e-12);
+        near(run.value("b.v"), 1.0, 1e-12);
+        for integrator in [Integrator::Tsit5, Integrator::Adams, Integrator::Stiff] {
+            let run = Case::new(&text).integrator(integrator).run();
+            all_near(&run.times("B.stick"), &[1.0], 1e-9);
+        }
+    }
+    let run = simulate(
+        "agent B { state v = 0  flow { v' = sign(1 - v) } }
+         system { b = B() }  run { until 3  stop when forall b in B: b.v >= 1 }",
+    );
+    near(run.time, 1.0, 1e-12);
+    // never above it
+    let (_, failed) = simulate_error(
+        "agent B { state v = 0  flow { v' = sign(1 - v) }  when v > 1 { v := 0 } }
+         system { b = B() }  run { until 3 }",
+    );
+    assert_eq!(failed.code, "HY0507", "{failed:?}");
+}
+
+/// What begins to grow at a kink is above zero from there on, once: not also a little before, by rounding.
+#[test]
+fn rule_15_what_grows_from_a_kink_on_makes_a_guard_true_once() {
+    let kinks = ["max(x - C, 0)", "if x > C then x - C else 0", "if x >= C then 1 else 0", "max(x - C, 0)^2"];
+    let guards = ["y > 0", "x >= C and y > 0", "y > 0 and x > C", "y' > 0 and x >= C", "rising(y > 0)"];
+    for (kink, guard) in kinks.iter().flat_map(|kink| guards.map(|guard| (kink, guard))) {
+        for (c, speed) in [(1.0, 1.0), (0.3, 1.0), (1.7, 0.7), (2.0, 2.0)] {
+            let text = format!(
+                "agent A {{ state x = 0, y = 0  discrete n: int = 0
+                   flow {{ x' = {speed}  y' = {kink} }}  t: when {guard} {{ n := n + 1 }} }}
+                 system {{ a = A() }}  run {{ until 4 }}"
+            );
+            let text = text.replace('C', &c.to_string());
+            let run = simulate_by_both_forms(&text);
+            // (x - c)^3 leaves zero later than its rounding
+            all_near(&run.times("A.t"), &[c / speed], 2e-2);
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Who took most steps, of all agents that have lived.
+//! Who has most of something, of all agents that have lived: steps, events.
 
 use std::cmp::Reverse;
 
@@ -9,31 +9,31 @@ const TOLD: usize = 8;
 /// So many are looked through at once.
 const GATHERED: usize = 256;
 
-/// Those with most steps so far.
+/// Those with most so far.
 #[derive(Clone, Debug, Default)]
-pub struct Slowest {
+pub struct Most {
     found: Vec<(Who, u64)>,
 }
 
-impl Slowest {
-    /// Takes note of an agent that takes no more steps.
-    pub fn note(&mut self, who: Who, steps: u64) {
-        if who.is_visible() && steps > 0 {
-            self.found.push((who, steps));
+impl Most {
+    /// Takes note of an agent that will have no more than `count`.
+    pub fn note(&mut self, who: Who, count: u64) {
+        if who.is_visible() && count > 0 {
+            self.found.push((who, count));
         }
         if self.found.len() >= GATHERED {
             self.choose();
         }
     }
 
-    /// Those with most steps; among equals, in the order of their numbers.
+    /// Those with most; among equals, in the order of their numbers.
     pub fn told(mut self) -> Vec<(Who, u64)> {
         self.choose();
         self.found
     }
 
     fn choose(&mut self) {
-        self.found.sort_unstable_by_key(|&(who, steps)| (Reverse(steps), who));
+        self.found.sort_unstable_by_key(|&(who, count)| (Reverse(count), who));
         self.found.truncate(TOLD);
     }
 }
