@@ -69,6 +69,8 @@ pub struct Written {
     pub restarted: FxHashSet<usize>,
     /// Changes of mode.
     pub moves: Vec<Move>,
+    /// Those who read others by their flow in the mode that they have entered than by the one before.
+    pub recoupled: Vec<usize>,
     /// Agents still to be made, and still to be removed.
     pub conceived: Vec<Conceived>,
     /// See `conceived`.
@@ -310,12 +312,23 @@ impl Engine<'_, '_> {
         self.agents.changes += 1;
         self.restart(change.agent, written);
         self.restart_readers(change.agent, Layout::MODE, written);
+        let read_before = self.coupled(change.agent);
         let time = self.present.time;
         let agent = &mut self.agents.agents[change.agent];
         agent.mode = reached(&self.program.types[agent.ty], agent.mode, &change.left, &change.entered);
         agent.aux[Layout::MODE] = agent.mode as f64;
         agent.aux[Layout::ENTRY] = time;
         remember(&self.program.types[agent.ty], &change.entered, &mut agent.aux);
+        if self.coupled(change.agent) != read_before {
+            written.recoupled.push(change.agent);
+        }
+    }
+
+    /// Whom the flow of an agent reads, rising.
+    fn coupled(&self, agent: usize) -> Vec<usize> {
+        let mut read = self.agents.couples(agent);
+        read.sort_unstable();
+        read
     }
 
     /// Keeps an agent's rows as they were before this micro-step.
@@ -366,9 +379,9 @@ impl Engine<'_, '_> {
         }
     }
 
-    /// Divides the groups anew of agents that changed their mode or their links, or have come to be (rule 13).
+    /// Divides the groups anew of agents that changed whom their flow reads, or their links, or have come to be (rule 13).
     pub fn regroup(&mut self, written: &mut Written) {
-        let mut changed: Vec<usize> = written.moves.iter().map(|change| change.agent).collect();
+        let mut changed: Vec<usize> = written.recoupled.clone();
         changed.extend(written.born.iter().chain(&written.relinked));
         changed.retain(|&agent| self.agents.is_alive(agent));
         changed.sort_unstable();

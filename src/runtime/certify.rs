@@ -10,6 +10,7 @@ use crate::runtime::fold::{self, Folded};
 use crate::runtime::observe::WhyUndecided;
 use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::Depth;
+use crate::runtime::sleep::FEW;
 use crate::runtime::solve::roots::{Curve, Known, Search, first_flip};
 use crate::runtime::solve::{time_resolution, ulp};
 use crate::runtime::truth::{self, Side};
@@ -42,9 +43,13 @@ impl Engine<'_, '_> {
         }
     }
 
-    /// Up to when all has to be known, s: without a cover, up to what happens next.
+    /// Up to when all has to be known, s: to the cover, but not beyond the instant that comes next.
     pub fn enough(&mut self, cover: f64) -> f64 {
-        if cover == f64::INFINITY { (self.next_cause() + 1.0).min(ENDLESS) } else { cover }
+        let cause = self.next_cause();
+        if cover == f64::INFINITY {
+            return (cause + 1.0).min(ENDLESS);
+        }
+        if cause < cover { cover.min(cause + 2.0 * self.event_tolerance(cause)) } else { cover }
     }
 
     /// Looks once more at every atom that is certified up to the cover only: a root that is due within the resolution of
@@ -86,6 +91,7 @@ impl Engine<'_, '_> {
         for agent in read.chain(fold::members(&folds)) {
             to = to.min(self.groups.groups[self.agents.agents[agent].group].clock);
         }
+        to = to.min(self.known_end(index, from));
         if to == f64::INFINITY {
             // Nothing but the time is read, and the run has no end: a stretch at a time.
             to = from + from.max(1.0);
@@ -178,6 +184,27 @@ impl Engine<'_, '_> {
         self.guards.atoms[index].sideless = sideless;
     }
 
+    /// Up to when a comparison, certified up to `from`, is worth looking at, s: an event of those who step together with the agents that it reads has all of
+    /// them begin anew, and roots beyond it are void. Infinite if none is known.
+    fn known_end(&mut self, index: usize, from: f64) -> f64 {
+        let cause = self.next_cause();
+        let end = cause + 2.0 * self.event_tolerance(cause);
+        let Some(due) = self.queues.flips.peek().filter(|due| due.time == cause && from < end) else {
+            return f64::INFINITY;
+        };
+        let groups_of = |index: usize| {
+            let (atom, slots) = self.guards.atom_slots(&self.agents, index);
+            let read = atom.slots.iter().map(|&slot| slots[slot]).filter(|&agent| agent != ABSENT);
+            let groups = read.map(|agent| self.agents.agents[agent].group);
+            let together = |&group: &usize| self.groups.groups[group].members.len() > 1;
+            groups.filter(together).collect::<SmallVec<[usize; 4]>>()
+        };
+        let own = groups_of(index);
+        let shares =
+            !own.is_empty() && groups_of(due.number as usize).iter().any(|group| own.contains(group));
+        if shares { end } else { f64::INFINITY }
+    }
+
     /// Whether g, which was zero at the beginning of a stretch, is positive nowhere in it but for rounding: then it has had no side.
     fn has_no_side(
         &mut self,
@@ -257,9 +284,15 @@ impl Engine<'_, '_> {
         from: f64,
         to: f64,
     ) -> Option<f64> {
+        let together = self.largest_group(slots);
         let state = &mut self.guards.atoms[index];
         if state.skip > 0 {
             state.skip -= 1;
+            return None;
+        }
+        if together > FEW && state.backoff == 0 {
+            // To bound all of them costs as much as many steps, and whatever happens to one of them ends it.
+            (state.backoff, state.skip) = (together, together);
             return None;
         }
         let truth = state.truth;
@@ -288,7 +321,7 @@ impl Engine<'_, '_> {
             horizon *= if share.is_finite() { share.clamp(1e-3, 0.25) } else { 0.2 };
         }
         let state = &mut self.guards.atoms[index];
-        state.backoff = (2 * state.backoff).clamp(4, BACKOFF_MAX);
+        state.backoff = (2 * state.backoff).clamp(4, BACKOFF_MAX.max(8 * together));
         (state.skip, state.stride) = (state.backoff, 8.0 * least);
         None
     }

@@ -6,6 +6,7 @@
 //! dimension in which these are fewest.
 
 use std::cell::OnceCell;
+use std::ops::ControlFlow;
 
 use rustc_hash::FxHashMap;
 
@@ -165,15 +166,15 @@ impl Grid {
         &self.boxes[number as usize * self.n..][..self.n]
     }
 
-    /// Calls `visit` for every two boxes that overlap, once, the lower number first.
-    pub fn for_each_pair(&self, visit: &mut dyn FnMut(u32, u32)) {
+    /// Calls `visit` for every two boxes that overlap, once, the lower number first, until it breaks off.
+    pub fn for_each_pair(&self, visit: &mut dyn FnMut(u32, u32) -> ControlFlow<()>) -> ControlFlow<()> {
         debug_assert!(self.moved.is_empty(), "pairs are listed of a new grid");
         for bucket in self.starts.windows(2) {
             let bucket = &self.entries[bucket[0] as usize..bucket[1] as usize];
             for (k, &(cell, a)) in bucket.iter().enumerate() {
                 for &(_, b) in bucket[k + 1..].iter().filter(|entry| entry.0 == cell) {
                     if self.overlap(a, b) && self.corner(a, b) == cell {
-                        visit(a.min(b), a.max(b));
+                        visit(a.min(b), a.max(b))?;
                     }
                 }
             }
@@ -183,10 +184,11 @@ impl Grid {
             let bounds = self.get(a);
             for b in small.near(bounds).chain(large.near(bounds).filter(|&b| a < b)) {
                 if self.overlap(a, b) {
-                    visit(a.min(b), a.max(b));
+                    visit(a.min(b), a.max(b))?;
                 }
             }
         }
+        ControlFlow::Continue(())
     }
 
     /// Changes a box.
@@ -349,7 +351,11 @@ mod tests {
             let boxes = some(300, dimensions, &mut die);
             let grid = Grid::new(dimensions, boxes);
             let mut found = Vec::new();
-            grid.for_each_pair(&mut |a, b| found.push((a, b)));
+            let whole = grid.for_each_pair(&mut |a, b| {
+                found.push((a, b));
+                ControlFlow::Continue(())
+            });
+            assert!(whole.is_continue());
             found.sort_unstable();
             let mut expected = Vec::new();
             for a in 0..300 {

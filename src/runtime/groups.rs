@@ -129,9 +129,11 @@ impl Groups {
         }
         loop {
             let with = self.components(agents, &members).into_iter().flatten();
-            let grouped =
-                with.flat_map(|agent| self.groups[agents.agents[agent].group].members.iter().copied());
-            let mut closed: Vec<usize> = grouped.collect();
+            let mut groups: Vec<usize> = with.map(|agent| agents.agents[agent].group).collect();
+            groups.sort_unstable();
+            groups.dedup();
+            let mut closed: Vec<usize> =
+                groups.iter().flat_map(|&group| self.groups[group].members.iter().copied()).collect();
             closed.sort_unstable();
             closed.dedup();
             if closed.len() == members.len() {

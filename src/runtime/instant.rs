@@ -107,6 +107,7 @@ impl Engine<'_, '_> {
             candidates.extend(enabled.map(|instance| Candidate { instance, by: By::Guard }));
             micro += 1;
             self.release_crossings(&woken);
+            self.compact_queues();
         }
         concerned.sort_unstable();
         concerned.dedup();

@@ -139,8 +139,16 @@ impl Engine<'_, '_> {
 
     /// Makes and removes agents as a micro-step, and the entry actions of those made, want it.
     pub fn turn_over(&mut self, written: &mut Written) -> Result<(), Failure> {
-        while !written.conceived.is_empty() {
+        let mut generations = 0;
+        while !written.conceived.is_empty() && !self.interrupted() {
             let conceived = std::mem::take(&mut written.conceived);
+            // Who is born has others made on entry, and these too.
+            generations += 1;
+            if generations > self.limits.generations_max {
+                let (limit, span) = (self.limits.generations_max, conceived[0].birth.span);
+                let place = self.place(written.born.last().copied().unwrap_or(conceived[0].creator));
+                return Err(Fate::Generations { place, limit, span }.into());
+            }
             let mut born = Vec::with_capacity(conceived.len());
             for conceived in &conceived {
                 born.push(self.bear(conceived)?);

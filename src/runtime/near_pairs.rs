@@ -3,7 +3,7 @@
 //! A pair that is not listed cannot make its condition true: its flag is armed, and nothing else is remembered of it. An
 //! agent that is written, or whose flow changes, so that it may leave its box, is listed anew at once (rule 14).
 
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 use smallvec::SmallVec;
 
@@ -126,7 +126,20 @@ impl<'p> Engine<'p, '_> {
         }
         field.grid.renew(near.len(), boxes);
         let mut wanted: Vec<[u32; 2]> = Vec::new();
-        field.grid.for_each_pair(&mut |a, b| wanted.extend(field.pairs(&self.agents, a, b)));
+        let most = self.limits.guards_max;
+        let found = field.grid.for_each_pair(&mut |a, b| {
+            wanted.extend(field.pairs(&self.agents, a, b));
+            if wanted.len() > most || self.interrupted() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        });
+        if found.is_break() {
+            self.mind_guards(wanted.len() as u128)?;
+            // The run ends here: nobody asks for the rest.
+            wanted.clear();
+        }
         wanted.extend(field.selves(&self.agents).iter().map(|&agent| [agent as u32; 2]));
         wanted.sort_unstable();
         let mut before = std::mem::take(&mut field.listed);

@@ -42,6 +42,11 @@ enum Distance {
     },
 }
 
+/// In groups larger than this a comparison does not try to sleep at once.
+pub const FEW: u16 = 4;
+
+/// For how many agents that step together the looks count between two tries to sleep, at most.
+const SLEEPLESS_MAX: usize = 4096;
 /// How often at most a shorter time is tried.
 const TRIES: usize = 5;
 /// By how much it is shorter.
@@ -52,6 +57,10 @@ impl Engine<'_, '_> {
     /// is done, if that is not certain, or in the plain form.
     pub fn settle_far(&mut self, index: usize) -> bool {
         if self.form == Form::Plain || !self.time_end.is_finite() || !self.is_bounded(index) {
+            return false;
+        }
+        let (_, slots) = self.guards.atom_slots(&self.agents, index);
+        if self.largest_group(&slots) > FEW {
             return false;
         }
         if self.guards.atoms[index].left_out {
@@ -67,6 +76,14 @@ impl Engine<'_, '_> {
         (state.certified, state.flip, state.settled, state.far) = (self.time_end, f64::INFINITY, false, far);
         state.version += 1;
         true
+    }
+
+    /// How many agents step together with one of these, at most.
+    pub fn largest_group(&self, slots: &Slots) -> u16 {
+        let groups =
+            slots.iter().filter(|&&agent| agent != ABSENT).map(|&agent| self.agents.agents[agent].group);
+        let most = groups.map(|group| self.groups.groups[group].members.len()).max().unwrap_or(0);
+        most.min(SLEEPLESS_MAX) as u16
     }
 
     /// What is known of a comparison of which an agent was written, or follows another way from now on.

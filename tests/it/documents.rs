@@ -9,7 +9,9 @@ use hyc::base::{Diagnostic, SourceMap};
 use hyc::model::{Files, Settings};
 use hyc::{calculus, model, syntax};
 
-use crate::harness::simulate;
+use hyc::runtime::{Algorithm, Form};
+
+use crate::harness::{Case, simulate};
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -66,6 +68,30 @@ fn every_sample_of_the_reference_is_sound() {
         render(&sources, &diagnostics, Colours::None)
     });
     assert_eq!(told.collect::<String>(), "");
+}
+
+/// Each as far as it says, but no longer than a minute, by both forms of the engine. One is stopped by an action of its own.
+#[test]
+fn every_sample_of_the_reference_runs() {
+    let text = document("docs/LANGUAGE.md");
+    let imported = fenced(&text, "hy imported");
+    let samples: Vec<String> =
+        fenced(&text, "hy").into_iter().filter(|sample| sample.contains("run {")).collect();
+    assert!(samples.len() >= 20, "{}", samples.len());
+    for sample in &samples {
+        let run = |form: Form| {
+            let mut case = Case::new(sample).algorithm(Algorithm::Masim(form));
+            for file in &imported {
+                let name = file.trim_start_matches("// ").lines().next().unwrap_or_default();
+                case = case.file(name, file);
+            }
+            let long = sample.contains("until 600");
+            let case = if long { case.until(60.0) } else { case };
+            case.run_any()
+        };
+        let [fast, plain] = [Form::Fast, Form::Plain].map(run);
+        assert_eq!(fast.log(), plain.log(), "{sample}");
+    }
 }
 
 #[test]

@@ -107,7 +107,9 @@ pub struct Run {
 /// Runs a model that must be right, and must end without an error.
 #[track_caller]
 pub fn simulate(text: &str) -> Run {
-    Case::new(text).run()
+    let [fast, plain] = both_forms(text);
+    all_near(&fast.event_times(), &plain.event_times(), 1e-6);
+    fast
 }
 
 /// The runs of a model by the fast and by the plain form of the engine, which must find the same events.

@@ -37,7 +37,7 @@ const WEIGHTS: [f64; 8] = [
 ];
 /// The weights of the rule of 7 points.
 const WEIGHTS_OF_7: [f64; 4] =
-    [0.129_484_966_168_869_7, 0.279_705_391_489_276_64, 0.381_830_050_505_118_93, 0.417_959_183_673_469_4];
+    [0.129_484_966_168_869_7, 0.279_705_391_489_276_64, 0.381_830_050_505_118_9, 0.417_959_183_673_469_4];
 
 /// The value at 1 of each Lagrange polynomial of the 15 nodes, from the greatest node down to the least.
 const AT_END: [f64; 15] = [
