@@ -55,6 +55,10 @@ impl<'p> Engine<'p, '_> {
                 self.guards.atoms[index].slack = 0.0;
             }
             self.guards.atoms[index].sideless = true;
+            if self.guards.atom_slots(&self.agents, index).0.relation == Relation::Crossing {
+                // What has no side counts as not negative, whatever it was before.
+                self.guards.atoms[index].truth = false;
+            }
             if !self.guards.atoms[index].left_out && !self.settle_far(index) {
                 self.settle(index, rule, &Written::default());
             }

@@ -4,7 +4,7 @@
 //! it reads, by quadrature, up to the clock of the one that lags most, as a comparison is certified. What is found ahead is void
 //! when one of them is written: before that, the hazard is taken away up to the instant.
 
-use crate::codegen::program::{TransitionSystem, Trigger};
+use crate::codegen::program::{Slot, TransitionSystem, Trigger};
 use crate::runtime::engine::{Due, Engine};
 use crate::runtime::exposed::Exposure;
 use crate::runtime::failure::Failure;
@@ -51,6 +51,17 @@ impl Engine<'_, '_> {
         frame.slots.len() > 2 || !frame.folds.is_empty()
     }
 
+    /// The agents over which the hazard of a pair ranges.
+    fn ranged_over(&self, instance: u32) -> Vec<usize> {
+        let frame = self.guards.definition(instance).frame;
+        let quantified = frame.slots.iter().skip(2).filter(|slot| matches!(slot, Slot::Root { .. }));
+        let mut types: Vec<usize> = quantified.map(|slot| slot.ty()).collect();
+        types.extend(frame.folds.iter().map(|fold| fold.range.ty));
+        types.sort_unstable();
+        types.dedup();
+        types.iter().flat_map(|&ty| self.agents.of_type[ty].iter().copied()).collect()
+    }
+
     fn exposure(&self, instance: u32) -> Option<&Exposure> {
         let arming = self.guards.instances[instance as usize].arming;
         self.exposures.of.get(&instance).filter(|exposure| exposure.arming == arming)
@@ -76,7 +87,12 @@ impl Engine<'_, '_> {
     /// The same for all, at the begin of an instant, if a hazard reads more agents than its two: their sets and links may change.
     pub fn catch_up_with_all(&mut self) {
         if self.exposures.are_wide {
-            let all: Vec<u32> = self.exposures.of.keys().copied().collect();
+            let Self { exposures, guards, .. } = self;
+            exposures
+                .of
+                .retain(|&instance, exposure| guards.instances[instance as usize].arming == exposure.arming);
+            exposures.are_wide = !exposures.of.is_empty();
+            let all: Vec<u32> = exposures.of.keys().copied().collect();
             all.into_iter().for_each(|instance| self.catch_up(instance));
         }
     }
@@ -88,10 +104,14 @@ impl Engine<'_, '_> {
         let Some(&exposure) = self.exposure(instance).filter(|exposure| exposure.due != Some(now)) else {
             return;
         };
-        let left = match self.spend(instance, (exposure.since, now), exposure.left) {
-            Spent::Left(left) => left,
-            Spent::At(_) => 0.0,
-            Spent::Undefined(..) => exposure.left,
+        let left = if exposure.undefined.is_some() && exposure.known <= now {
+            // What has no hazard beyond ends here.
+            exposure.rest
+        } else {
+            match self.spend(instance, (exposure.since, now), exposure.left) {
+                Spent::Left(left) | Spent::Undefined(_, _, left) => left,
+                Spent::At(_) => 0.0,
+            }
         };
         let state = &mut self.guards.instances[instance as usize];
         state.arming += 1;
@@ -102,35 +122,47 @@ impl Engine<'_, '_> {
 
     /// Follows the hazards of all exposed pairs up to the cover at least.
     pub fn expose_up_to(&mut self, cover: f64) -> Result<(), Failure> {
+        let mut waiting = Vec::new();
+        let mut done = Ok(());
         while let Some(&due) = self.queues.exposed.peek() {
-            if due.time >= self.enough(cover) || self.interrupted() {
-                return Ok(());
+            let enough = self.enough(cover);
+            if due.time >= enough || self.interrupted() {
+                break;
             }
             self.queues.exposed.pop();
             let valid = self.exposure(due.number).filter(|exposure| exposure.arming == due.version);
             let Some(&Exposure { undefined, .. }) = valid else { continue };
             if let Some(hazard) = undefined {
-                if self.next_cause() > due.time {
-                    return Err(self.no_hazard(due, hazard));
+                // What comes with it may end it: a guard whose boundary it is.
+                let soon = due.time + self.event_tolerance(due.time);
+                if soon < enough && soon < self.next_cause() {
+                    done = Err(self.no_hazard(due, hazard));
+                    break;
                 }
-                // What comes before may end it.
-                self.queues.exposed.push(due);
-                return Ok(());
+                waiting.push(due);
+                continue;
             }
             self.expose(due);
             if self.has_thawed {
-                self.queues.exposed.push(due);
-                return Ok(());
+                waiting.push(due);
+                break;
             }
         }
-        Ok(())
+        self.queues.exposed.extend(waiting);
+        done
     }
 
     /// Follows the hazard of a pair from where it is known on.
     fn expose(&mut self, due: Due) {
         let Due { time: from, number: instance, version: arming } = due;
         let slots = self.guards.slots(&self.agents, instance);
-        let mut to = if self.is_wide(instance) { self.cover() } else { f64::INFINITY };
+        let mut to = f64::INFINITY;
+        if self.is_wide(instance) {
+            to = self.cover().min(self.window_end);
+            for agent in self.ranged_over(instance) {
+                self.thaw_at(agent, from);
+            }
+        }
         for &agent in slots.iter().filter(|&&agent| agent != ABSENT) {
             self.thaw_at(agent, from);
             to = to.min(self.groups.groups[self.agents.agents[agent].group].clock);
@@ -152,7 +184,9 @@ impl Engine<'_, '_> {
                 (ahead.known, ahead.due) = (f64::INFINITY, Some(time));
                 self.queues.schedules.push(Due { time, number: instance, version: arming });
             }
-            Spent::Undefined(time, hazard) => (ahead.known, ahead.undefined) = (time, Some(hazard)),
+            Spent::Undefined(time, hazard, rest) => {
+                (ahead.known, ahead.rest, ahead.undefined) = (time, rest, Some(hazard));
+            }
         }
         self.exposures.of.insert(instance, ahead);
         if ahead.known < self.time_end {
@@ -178,7 +212,7 @@ impl Engine<'_, '_> {
             truth::value(&self.agents, &mut rows, rate, &pair.transition.frame, &slots, &own)
         };
         let accuracy = SHARE * self.program.run.tolerance.min(1e-3);
-        let spent = spend(&mut hazard, (from, to), left, accuracy, time_resolution(to));
+        let spent = spend(&mut hazard, (from, to), left, accuracy, 0.25 * time_resolution(from));
         self.curves.evaluations += n_values;
         self.curves.operations += n_values * self.program.kernel(rate).operations();
         self.exposures.rows = Some(rows);

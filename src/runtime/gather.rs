@@ -84,7 +84,7 @@ impl Engine<'_, '_> {
         }
         if !is_scheduled {
             time = self.defined_side(time, near, &changed);
-            time = self.after_turns(time, window, &changed);
+            time = self.after_turns(time, &changed);
         }
         self.present.go(time);
         let mut concerned: Vec<u32> = Vec::new();
@@ -236,12 +236,14 @@ impl Engine<'_, '_> {
 
     /// Roots that were found just before a kink, beyond which their flows have turned by now, are at the kink: what the flow of one side
     /// says of the other is wrong by rounding. None is moved beyond anything else that is due.
-    fn after_turns(&mut self, time: f64, window: f64, changed: &[(usize, f64)]) -> f64 {
+    fn after_turns(&mut self, time: f64, changed: &[(usize, f64)]) -> f64 {
         let mut latest = time;
+        let window = time + time_resolution(time);
         for &(index, _) in changed {
             let (atom, slots) = self.guards.atom_slots(&self.agents, index);
             let read = atom.slots.iter().map(|&slot| slots[slot]).filter(|&agent| agent != ABSENT);
-            let starts = read.map(|agent| self.agents.agents[agent].segment.start);
+            let turning = read.filter(|&agent| !self.agents.flow(agent).kinks.is_empty());
+            let starts = turning.map(|agent| self.agents.agents[agent].segment.start);
             latest = starts.filter(|&start| start <= window).fold(latest, f64::max);
         }
         if latest < self.next_cause() { latest } else { time }

@@ -184,32 +184,38 @@ impl Engine<'_, '_> {
             Advance::Moved => Ok(()),
             Advance::Turned(hits) => {
                 self.present.forget();
+                let mut chattering = None;
                 for hit in &hits {
                     if let Finding::Zeno(_) = self.repetitions.turned(hit.agent, hit.kink, cover) {
-                        if self.touches_by(cover) {
-                            // What the flow reaches where it turns back may be what ends it.
-                            let cause = self.next_cause();
-                            return self.execute(cause);
-                        }
-                        return Err(self.chattering(hit, cover).into());
+                        chattering = chattering.or(Some(hit));
                     }
                 }
                 self.groups.groups[number].version += 1;
                 let members = self.groups.groups[number].members.clone();
                 members.iter().for_each(|&member| self.agents.divert(member));
                 self.doubt(&members, cover);
-                self.relist_turned(&members, cover)
+                self.relist_turned(&members, cover)?;
+                match chattering {
+                    None => Ok(()),
+                    // What the flow reaches where it turns back may be what ends it.
+                    Some(_) if self.touches_by(cover, &members) => {
+                        let cause = self.next_cause();
+                        self.execute(cause)
+                    }
+                    Some(hit) => Err(self.chattering(hit, cover).into()),
+                }
             }
             Advance::Blocked(obstacle) => self.unblock(number, obstacle, cover),
         }
     }
 
-    /// Whether what comes next comes up to `time`, and is that a comparison touches its boundary.
-    fn touches_by(&mut self, time: f64) -> bool {
+    /// Whether what comes next comes up to `time`, and is that a comparison of some of these agents touches its boundary.
+    fn touches_by(&mut self, time: f64, members: &[usize]) -> bool {
         let cause = self.next_cause();
         let touches = |due: &Due| {
-            let (atom, _) = self.guards.atom_slots(&self.agents, due.number as usize);
-            may_touch(atom, &self.guards.atoms[due.number as usize])
+            let (atom, slots) = self.guards.atom_slots(&self.agents, due.number as usize);
+            atom.slots.iter().any(|&slot| members.contains(&slots[slot]))
+                && may_touch(atom, &self.guards.atoms[due.number as usize])
         };
         cause <= time && self.queues.flips.peek().is_some_and(touches)
     }

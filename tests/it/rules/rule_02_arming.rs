@@ -360,6 +360,22 @@ fn rule_02_a_crossing_that_is_armed_again_at_zero_forgets_its_side() {
     }
 }
 
+/// It was negative before, and becomes so again before it crosses.
+#[test]
+fn rule_02_a_crossing_forgets_the_sign_of_its_former_life() {
+    for sign in ["-", ""] {
+        let run = simulate(&format!(
+            "agent P {{ state x = -1  discrete re: int = 0
+               initial mode M {{
+                 flow {{ x' = if time < 2 then 0 else if time < 3 then {sign}(-1) else {sign}1 }}
+                 s: when crossing(x) {{ }}
+                 go: when time >= 1 and re == 0 -> M {{ x := 0  re := 1 }} }} }}
+             system {{ p = P() }}  run {{ until 6 }}"
+        ));
+        all_near(&run.times("P.s"), &[4.0], 1e-9);
+    }
+}
+
 #[test]
 fn rule_02_a_touch_is_no_crossing() {
     let run = simulate(

@@ -226,6 +226,49 @@ fn rule_11_hazards_of_pairs_that_flow_follow_those_who_come_and_go() {
     near(run.times("Meet.meet").len() as f64, 10.5 * 25.0, 70.0);
 }
 
+/// Its guard, or an event of who is read, ends a hazard where it is zero or not defined beyond; nothing of it is lost.
+#[test]
+fn rule_11_the_hazard_of_a_pair_may_end_where_it_is_no_hazard() {
+    let agents = |event: &str| {
+        format!(
+            "agent A {{ state x = 0  discrete n: int = 0  flow {{ x' = 1 }}  back: when x >= {event} {{ x := 0 }} }}"
+        )
+    };
+    let rest = "system { all = A[2]() }  run { until 40  seed 3 }";
+    let cases: [(&str, &str, &dyn Fn(f64) -> f64, f64); 4] = [
+        ("1", "2*sqrt(1 - a.x^2)", &|x| 2.0 * (1.0 - x * x).max(0.0).sqrt(), 1.0),
+        ("1", "3*(1 - a.x)", &|x| 3.0 * (1.0 - x), 1.0),
+        ("2", "3*(1 - a.x) when a.x < 1", &|x| 3.0 * (1.0 - x).max(0.0), 2.0),
+        ("2", "3*sqrt(1 - b.x) when a.x <= 1", &|x| 3.0 * (1.0 - x).max(0.0).sqrt(), 2.0),
+    ];
+    for (end, rate, hazard, period) in cases {
+        let [flowing, constant] = with_rate(&agents(end), rate, rest);
+        let run = simulate_to_the_end(&flowing);
+        let draws = Case::new(&constant).until(400.0).run();
+        let pair = ["all[0]", "all[1]"];
+        let jumps: Vec<f64> = (1..40).map(f64::from).collect();
+        let hazard = |t: f64| hazard(t % period);
+        // Simpson's rule is slow at the end of a square root
+        integrals_are_draws(&meetings(&run, pair), &meetings(&draws, pair), hazard, &jumps, 2e-4);
+    }
+}
+
+/// Who is read beyond the two may have run ahead when the guard opens.
+#[test]
+fn rule_11_the_hazard_of_a_pair_may_range_over_those_who_had_run_ahead() {
+    let rate = "0.002*(sum c in C: (c.y + 1)^4) when (a.x - b.x)^2 < 1";
+    for seed in 1..5 {
+        let run = simulate_to_the_end(&format!(
+            "agent A(v: real) {{ state x = 0  discrete n: int = 0  flow {{ x' = v }} }}
+             agent C(k: int) {{ state y = 1, w = 0  flow {{ y' = w  w' = -(1 + 0.1*k)*y }} }}
+             interaction Meet(a: A, b: A) {{ meet: rate {rate} {{ a.n := a.n + 1  b.n := b.n + 1 }} }}
+             system {{ a = A(v = 1)  b = A(x = 22, v = 0)  c = C[20](k = index) }}
+             run {{ until 40  seed {seed} }}"
+        ));
+        assert!(run.events.iter().all(|event| (21.0..=23.0 + 1e-9).contains(&event.time)));
+    }
+}
+
 /// The hazard would be negative from 2 s on; an event before that ends it.
 #[test]
 fn rule_11_the_hazard_of_a_pair_is_not_negative() {
