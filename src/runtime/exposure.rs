@@ -4,19 +4,24 @@
 //! it reads, by quadrature, up to the clock of the one that lags most, as a comparison is certified. What is found ahead is void
 //! when one of them is written: before that, the hazard is taken away up to the instant.
 
-use crate::codegen::program::{Slot, TransitionSystem, Trigger};
+use crate::codegen::program::{FunctionId, Slot, TransitionSystem, Trigger};
 use crate::runtime::engine::{Due, Engine};
 use crate::runtime::exposed::Exposure;
 use crate::runtime::failure::Failure;
 use crate::runtime::guards::Origin;
-use crate::runtime::population::ABSENT;
-use crate::runtime::present::Present;
+use crate::runtime::population::{ABSENT, Slots};
+use crate::runtime::present::{Depth, Present, depth_read};
 use crate::runtime::solve::quadrature::{Spent, spend};
 use crate::runtime::solve::{scheduled, time_resolution};
 use crate::runtime::truth;
 
 /// The share of the tolerance of the run to which an integral over a stretch is known.
 const SHARE: f64 = 1e-3;
+
+/// So much of an integral may lie between the bounds of a stretch that is not divided.
+const UNSEEN_MAX: f64 = 1.0;
+/// Into so many stretches one is divided at most.
+const STRETCHES_MAX: usize = 1024;
 
 impl Engine<'_, '_> {
     /// A pair has become exposed or is so no more; its guard, its arming or what has fired may be the reason. `open`: whether its guard is
@@ -194,6 +199,27 @@ impl Engine<'_, '_> {
         }
     }
 
+    /// Divides a stretch where bounds of a hazard allow more than quadrature may see by its values: a peak between them.
+    fn stretches(&mut self, rate: FunctionId, slots: &Slots, whole: (f64, f64)) -> Vec<(f64, f64)> {
+        let kernel = self.program.kernel(rate);
+        let (mut parts, mut found) = (vec![whole], Vec::new());
+        if depth_read(kernel) != Depth::States || slots.contains(&ABSENT) {
+            return parts;
+        }
+        while let Some((from, to)) = parts.pop() {
+            let bound = self.range_by_tracks(rate, slots, (from, to));
+            let unseen = bound.map_or(0.0, |bound| (bound.hi - bound.lo) * (to - from));
+            let middle = 0.5 * (from + to);
+            let is_divisible = from < middle && middle < to && found.len() + parts.len() < STRETCHES_MAX;
+            if unseen.is_finite() && unseen > UNSEEN_MAX && is_divisible {
+                parts.extend([(middle, to), (from, middle)]);
+            } else {
+                found.push((from, to));
+            }
+        }
+        found
+    }
+
     /// Takes the hazard of a pair over a stretch, on which its agents are known, away from `left`.
     fn spend(&mut self, instance: u32, (from, to): (f64, f64), left: f64) -> Spent {
         let Origin::Pair(pair) = self.guards.definition(instance).origin else { return Spent::Left(left) };
@@ -202,6 +228,7 @@ impl Engine<'_, '_> {
             return Spent::Left(left);
         }
         let (slots, own) = (self.guards.slots(&self.agents, instance), self.guards.roots(instance));
+        let stretches = self.stretches(rate, &slots, (from, to));
         let mut rows = self.exposures.rows.take().unwrap_or_else(|| Present::new(&self.agents));
         rows.make_room(self.agents.len());
         rows.forget();
@@ -212,7 +239,11 @@ impl Engine<'_, '_> {
             truth::value(&self.agents, &mut rows, rate, &pair.transition.frame, &slots, &own)
         };
         let accuracy = SHARE * self.program.run.tolerance.min(1e-3);
-        let spent = spend(&mut hazard, (from, to), left, accuracy, 0.25 * time_resolution(from));
+        let mut spent = Spent::Left(left);
+        for stretch in stretches {
+            let Spent::Left(left) = spent else { break };
+            spent = spend(&mut hazard, stretch, left, accuracy, 0.25 * time_resolution(from));
+        }
         self.curves.evaluations += n_values;
         self.curves.operations += n_values * self.program.kernel(rate).operations();
         self.exposures.rows = Some(rows);

@@ -95,7 +95,12 @@ impl Engine<'_, '_> {
     }
 
     /// Bounds of a function of states over [from, to]; none if it reads an agent whose way there is not known.
-    fn range_by_tracks(&mut self, function: FunctionId, slots: &Slots, span: (f64, f64)) -> Option<Interval> {
+    pub fn range_by_tracks(
+        &mut self,
+        function: FunctionId,
+        slots: &Slots,
+        span: (f64, f64),
+    ) -> Option<Interval> {
         let n_states =
             |&agent: &usize| if agent == ABSENT { 0 } else { self.agents.agents[agent].states.len() };
         let unknown = |agent: &usize| SmallVec::from_elem(Interval::WHOLE, n_states(agent));

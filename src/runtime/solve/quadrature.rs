@@ -63,6 +63,9 @@ const PARTS_MAX: usize = 10_000;
 /// Steps towards the time at which nothing is left; a bisection ends in fewer.
 const STEPS_MAX: usize = 64;
 
+/// The least share of the accuracy that a part has.
+const SHARE_LEAST: f64 = 1e-3;
+
 /// Takes the integral over [s, e] of a rate that is not negative away from `left`, to within `accuracy`. Parts no wider than `resolution`
 /// are not divided.
 pub fn spend(
@@ -78,7 +81,9 @@ pub fn spend(
         n_parts += 1;
         let part = integral(rate, from, to);
         let middle = 0.5 * (from + to);
-        let is_fine = part.wrong.is_none() && part.error <= accuracy * (to - from) / (e - s);
+        // Few parts are so hard that their share would be too small to reach.
+        let share = ((to - from) / (e - s)).max(SHARE_LEAST);
+        let is_fine = part.wrong.is_none() && part.error <= accuracy * share;
         if !is_fine && to - from > resolution && from < middle && middle < to && n_parts < PARTS_MAX {
             parts.extend([(middle, to), (from, middle)]);
             continue;

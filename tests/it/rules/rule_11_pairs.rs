@@ -235,7 +235,8 @@ fn rule_11_the_hazard_of_a_pair_may_end_where_it_is_no_hazard() {
         )
     };
     let rest = "system { all = A[2]() }  run { until 40  seed 3 }";
-    let cases: [(&str, &str, &dyn Fn(f64) -> f64, f64); 4] = [
+    type Hazard<'a> = &'a dyn Fn(f64) -> f64;
+    let cases: [(&str, &str, Hazard<'_>, f64); 4] = [
         ("1", "2*sqrt(1 - a.x^2)", &|x| 2.0 * (1.0 - x * x).max(0.0).sqrt(), 1.0),
         ("1", "3*(1 - a.x)", &|x| 3.0 * (1.0 - x), 1.0),
         ("2", "3*(1 - a.x) when a.x < 1", &|x| 3.0 * (1.0 - x).max(0.0), 2.0),
@@ -267,6 +268,18 @@ fn rule_11_the_hazard_of_a_pair_may_range_over_those_who_had_run_ahead() {
         ));
         assert!(run.events.iter().all(|event| (21.0..=23.0 + 1e-9).contains(&event.time)));
     }
+}
+
+/// A peak of a tenth of a second within one step of a thousand.
+#[test]
+fn rule_11_a_peak_of_the_hazard_of_a_pair_is_not_passed_over() {
+    let agents = "agent A(v: real) { state x = 0  discrete n: int = 0  flow { x' = v } }";
+    let rest = "system { a = A(v = 1)  b = A(x = 700, v = 0) }  run { until 1000  seed 4 }";
+    let [flowing, constant] = with_rate(agents, "100*exp(-((a.x - b.x)/0.1)^2)", rest);
+    let run = simulate_to_the_end(&flowing);
+    let draws = Case::new(&constant).until(400.0).run();
+    let hazard = |t: f64| 100.0 * (-((t - 700.0) / 0.1).powi(2)).exp();
+    integrals_are_draws(&meetings(&run, ["a", "b"]), &meetings(&draws, ["a", "b"]), hazard, &[699.0], 1e-6);
 }
 
 /// The hazard would be negative from 2 s on; an event before that ends it.
