@@ -7,7 +7,7 @@ use crate::model::ir::Action;
 use crate::runtime::{Algorithm, published_take};
 
 /// Refuses what the published algorithms cannot run.
-pub(super) fn refuse_aggregates(algorithm: Algorithm, program: &Program) -> Result<(), Refused> {
+pub(super) fn refuse_unpublished(algorithm: Algorithm, program: &Program) -> Result<(), Refused> {
     if matches!(algorithm, Algorithm::Masim(_)) {
         return Ok(());
     }

@@ -12,7 +12,7 @@ use super::input::{Loaded, load, name_of};
 use super::limits::Limits;
 use super::outputs::{OutputFiles, kind_of};
 use super::progress::ProgressLine;
-use super::refusal::{refuse_aggregates, refuse_endless};
+use super::refusal::{refuse_endless, refuse_unpublished};
 use super::sinks::Sinks;
 use super::terminal::{complain, say, say_aside, tell};
 use super::texts::{places, texts};
@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
     if !arguments.quiet {
         tell(&sources, &levels.settle(&sources, warnings));
     }
-    refuse_aggregates(algorithm, &program)?;
+    refuse_unpublished(algorithm, &program)?;
     let compile_seconds = begun.elapsed().as_secs_f64();
     let code_seconds = program.cost.seconds;
     let compile_parts = [

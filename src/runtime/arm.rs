@@ -55,10 +55,6 @@ impl<'p> Engine<'p, '_> {
                 self.guards.atoms[index].slack = 0.0;
             }
             self.guards.atoms[index].sideless = true;
-            if self.guards.atom_slots(&self.agents, index).0.relation == Relation::Crossing {
-                // What has no side counts as not negative, whatever it was before.
-                self.guards.atoms[index].truth = false;
-            }
             if !self.guards.atoms[index].left_out && !self.settle_far(index) {
                 self.settle(index, rule, &Written::default());
             }
@@ -138,7 +134,9 @@ impl<'p> Engine<'p, '_> {
     pub fn settle(&mut self, index: usize, rule: Rule, written: &Written) {
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
         let time = self.present.time;
-        let before = self.guards.atoms[index];
+        let mut before = self.guards.atoms[index];
+        // What has no side counts as not negative, whatever it was before it was armed.
+        before.truth &= !(before.sideless && atom.relation == Relation::Crossing);
         let absent = atom.slots.iter().any(|&slot| slots[slot] == ABSENT);
         let kernel = self.program.kernel(atom.value);
         self.curves.evaluations += 1;

@@ -284,12 +284,13 @@ impl Engine<'_, '_> {
         from: f64,
         to: f64,
     ) -> Option<f64> {
-        let together = self.largest_group(slots);
         let state = &mut self.guards.atoms[index];
         if state.skip > 0 {
             state.skip -= 1;
             return None;
         }
+        let together = self.largest_group(slots);
+        let state = &mut self.guards.atoms[index];
         if together > FEW && state.backoff == 0 {
             // To bound all of them costs as much as many steps, and whatever happens to one of them ends it.
             (state.backoff, state.skip) = (together, together);

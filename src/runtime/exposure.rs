@@ -38,11 +38,8 @@ impl Engine<'_, '_> {
         let is_exposed = self.exposure(instance).is_some();
         let state = &mut self.guards.instances[instance as usize];
         if open && !is_exposed {
-            state.arming += 1;
-            let (arming, left, now) = (state.arming, state.delay, self.present.time);
-            let exposure = Exposure::beginning(arming, now, left);
-            self.exposures.of.insert(instance, exposure);
-            self.queues.exposed.push(Due { time: now, number: instance, version: arming });
+            let left = state.delay;
+            self.expose_anew(instance, left);
             self.exposures.are_wide |= self.is_wide(instance);
         } else if !open && let Some(exposure) = self.exposures.of.remove(&instance) {
             state.arming += 1;
@@ -114,10 +111,16 @@ impl Engine<'_, '_> {
             exposure.rest
         } else {
             match self.spend(instance, (exposure.since, now), exposure.left) {
-                Spent::Left(left) | Spent::Undefined(_, _, left) => left,
+                Spent::Left(left) | Spent::Undefined { left, .. } => left,
                 Spent::At(_) => 0.0,
             }
         };
+        self.expose_anew(instance, left);
+    }
+
+    /// A pair is exposed from the present on, with this left; what was known of it is void.
+    fn expose_anew(&mut self, instance: u32, left: f64) {
+        let now = self.present.time;
         let state = &mut self.guards.instances[instance as usize];
         state.arming += 1;
         let arming = state.arming;
@@ -189,8 +192,8 @@ impl Engine<'_, '_> {
                 (ahead.known, ahead.due) = (f64::INFINITY, Some(time));
                 self.queues.schedules.push(Due { time, number: instance, version: arming });
             }
-            Spent::Undefined(time, hazard, rest) => {
-                (ahead.known, ahead.rest, ahead.undefined) = (time, rest, Some(hazard));
+            Spent::Undefined { time, value, left } => {
+                (ahead.known, ahead.rest, ahead.undefined) = (time, left, Some(value));
             }
         }
         self.exposures.of.insert(instance, ahead);

@@ -16,7 +16,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::algorithm::{algorithm, limits_of};
 use super::arguments::CompareArguments;
 use super::input::{Loaded, load, reason};
-use super::refusal::{refuse_aggregates, refuse_endless};
+use super::refusal::{refuse_endless, refuse_unpublished};
 use super::run::{INTERRUPTED, compile, listen};
 use super::terminal::{say, say_aside, tell};
 use super::{Exit, Refused};
@@ -128,7 +128,7 @@ fn run_cell(
         }
     };
     for &algorithm in &algorithms {
-        refuse_aggregates(algorithm, &program)?;
+        refuse_unpublished(algorithm, &program)?;
     }
     program.run.records.clear();
     program.run.absolute = None;

@@ -9,8 +9,15 @@ pub enum Spent {
     Left(f64),
     /// Nothing was left at this time.
     At(f64),
-    /// From this time on the integrand is negative or not finite: this; and what is left then.
-    Undefined(f64, f64, f64),
+    /// From a time on the integrand is negative or not finite.
+    Undefined {
+        /// From when.
+        time: f64,
+        /// What it is there.
+        value: f64,
+        /// What is left then.
+        left: f64,
+    },
 }
 
 /// The nodes in [0, 1] of the rule of 15 points over [-1, 1]; every other one, from the second on, is of that of 7.
@@ -89,7 +96,7 @@ pub fn spend(
             continue;
         }
         if let Some(value) = part.wrong {
-            return Spent::Undefined(from, value, left);
+            return Spent::Undefined { time: from, value, left };
         }
         if part.value > 0.0 && part.value >= left {
             return Spent::At(end(rate, (from, to), left, part.value));
@@ -201,7 +208,7 @@ mod tests {
     #[test]
     fn where_a_rate_becomes_negative_is_told() {
         let spent = spend(&mut |t| 1.0 - t, (0.0, 3.0), 10.0, 1e-12, 1e-14);
-        let Spent::Undefined(time, value, left) = spent else { panic!("{spent:?}") };
+        let Spent::Undefined { time, value, left } = spent else { panic!("{spent:?}") };
         assert!(
             (time - 1.0).abs() < 1e-12 && value < 0.0 && (left - 9.5).abs() < 1e-12,
             "{time} {value} {left}"
