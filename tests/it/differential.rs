@@ -1,6 +1,6 @@
 //! Does the engine do what the language says? Random models, run by it and by a slow and obvious reference simulator.
 //!
-//! A model counts if the reference's own log is the same under half its step. `cargo test` runs 200 models of each kind;
+//! A model counts if the reference's own log is the same under half its step and a tenth of its tolerance. `cargo test` runs 200 models of each kind;
 //! `HYC_MODELS=10000 cargo test differential -- --nocapture` runs so many, from number `HYC_FIRST` (0) on; with
 //! `HYC_MODELS=1 HYC_FIRST=n HYC_PRINT=1` that is model n alone, printed first, and with `HYC_FILE=path` the model of that file.
 

@@ -8,7 +8,7 @@ use hyc::base::{Diagnostic, SourceMap};
 use hyc::model::{Files, Settings};
 use hyc::{calculus, model, syntax};
 
-use crate::harness::simulate_error;
+use crate::harness::{Case, Ended, simulate_error};
 
 /// Data files beside the model.
 struct Beside(PathBuf);
@@ -523,4 +523,99 @@ fn a_reset_onto_the_boundary_does_not_fire_again() {
                 system { a = A() }  run { until 2 }";
     assert!(codes(text).is_empty());
     assert_eq!(crate::harness::simulate(text).times("A.a"), [0.0]);
+}
+
+/// The warnings about one agent with these parts, and the error with which its run ends, if it does.
+#[track_caller]
+fn told_and_met(parts: &str) -> (Vec<&'static str>, Option<&'static str>) {
+    let text = format!("agent A(p: real) {{ {parts} }}  system {{ a = A(p = 0.5) }}  run {{ until 10 }}");
+    let met = match Case::new(&text).run_any().end {
+        Ended::Error(error) => Some(error.code),
+        _ => None,
+    };
+    let told = codes(&text).into_iter().filter(|code| ["HY0626", "HY0627"].contains(code)).collect();
+    (told, met)
+}
+
+#[test]
+fn invariants_that_break_at_once_are_told_where_runs_meet_them() {
+    let broken = [
+        // at the start: on the boundary, beyond it, one of two, by a parameter of the agent
+        "state x = 1  invariant x <= 1  flow { x' = 1 }",
+        "state x = 2  invariant x <= 1  flow { x' = 1 }",
+        "state x = 0, y = 1  invariant x >= 0 and y > 0  flow { x' = -2  y' = 1 }",
+        "state x = p  invariant 2*x <= 1  flow { x' = p }",
+        "state x = 0  invariant x <= 0  flow { x' = 1 }  later: when x >= 1 { x := 0 }",
+        // behind a transition, by what it asks, or by what it writes
+        "state x = 0  initial mode M { flow { x' = 1 }  out: when x >= 1 -> N }
+         mode N { invariant x <= 1  flow { x' = x } }",
+        "state x = 0, y = 0  initial mode M { flow { x' = 1  y' = 1 }  out: when x + y >= 1 -> N }
+         mode N { invariant x + y <= 1  flow { x' = 1  y' = 0 } }",
+        "state x = 0, v = 0  initial mode M { flow { x' = 1  v' = 0 }  out: when x >= 1 -> N { v := 2  x := 1 } }
+         mode N { invariant v <= 2  flow { x' = 0  v' = x^2 } }",
+        "state x = 0  invariant x <= 1  flow { x' = 1 }  full: when x >= 1",
+        "state x = 0  invariant x <= 1  initial mode M { flow { x' = 1 }  mode K { }  initial mode L { go: after 1 when x >= 1 -> N } }
+         mode N { flow { x' = 2 }  back: after 5 -> M }",
+    ];
+    for parts in broken {
+        let (told, met) = told_and_met(parts);
+        assert!(told.contains(&"HY0626"), "{parts}: {told:?}");
+        assert_eq!(met, Some("HY0501"), "{parts}");
+    }
+    let fine = [
+        // the flow leads in, or along, or is not known; the way out is open
+        "state x = 1  invariant x <= 1  flow { x' = -1 }",
+        "state x = 1  invariant x <= 1  flow { x' = 0 }",
+        "state x = 1  invariant x <= 1  flow { x' = sin(time) - 1 }",
+        "state x = 1  invariant x <= 1  initial mode M { flow { x' = 1 }  out: when x >= 1 -> N }  mode N { flow { x' = -1 } }",
+        "state x = 0  initial mode M { flow { x' = 1 }  out: when x >= 1 -> N { x := 0 } }
+         mode N { invariant x <= 1  flow { x' = -x } }",
+        // set right on entry
+        "state x = 2  invariant x <= 1  entry { x := 0 }  flow { x' = -1 }",
+    ];
+    for parts in fine {
+        let (told, met) = told_and_met(parts);
+        assert!(!told.contains(&"HY0626"), "{parts}: {told:?}");
+        assert_eq!(met, None, "{parts}");
+    }
+}
+
+#[test]
+fn zeno_behaviour_is_told_where_runs_meet_it() {
+    let tanks = |inflow: f64| {
+        format!(
+            "state a = 1, b = 1  initial mode M {{ flow {{ a' = {inflow} - 1  b' = -1 }}  to_b: when b <= 0 -> N }}
+             mode N {{ flow {{ a' = -1  b' = {inflow} - 1 }}  to_a: when a <= 0 -> M }}"
+        )
+    };
+    let met_by_a_run = [
+        "state x = 1, v = 0  flow { x' = v  v' = -9.81 }  bounce: when x <= 0 { v := -0.5*v }".to_string(),
+        "state x = 1, v = 0  flow { x' = v  v' = -9.81 }  bounce: when x <= 0 { v := -p*v }".to_string(),
+        "state x = 0, v = 1  flow { x' = v  v' = 3 - v }  bounce: when 1 <= x and v > 0 { v := -0.3*v  x := 1 }".to_string(),
+        "discrete d: real = 2  initial mode M { again: after d/2 -> M { d := p*d } }".to_string(),
+        tanks(1.5),
+    ];
+    for parts in &met_by_a_run {
+        let (told, met) = told_and_met(parts);
+        assert_eq!(told, ["HY0627"], "{parts}");
+        // The tanks are both empty at an instant that rounding decides.
+        assert!(met == Some("HY0506") || parts.contains("to_a") && met == Some("HY0505"), "{parts}: {met:?}");
+    }
+    let not_met = [
+        // over before, elastic, let go, kicked, not pushed, slow ones do not bounce
+        "state x = 100, v = 0  flow { x' = v  v' = -2 }  bounce: when x <= 0 { v := -0.5*v }".to_string(),
+        "state x = 1, v = 0  flow { x' = v  v' = -1 }  bounce: when x <= 0 { v := -v }".to_string(),
+        "state x = 1, v = 0  initial mode M { flow { x' = v  v' = -9.81 }
+         rest: when x <= 0 and v >= -0.1 -> N { x := 0  v := 0 }  bounce: when x <= 0 { v := -0.5*v } }
+         mode N { flow { x' = 0  v' = 0 } }".to_string(),
+        "state x = 1, v = 0  flow { x' = v  v' = -9.81 }  bounce: when x <= 0 { v := -0.5*v }  kick: every 1 { v := v + 9 }".to_string(),
+        "state x = 1, v = -1  flow { x' = v  v' = 0 }  bounce: when x <= 0 { v := -0.5*v }".to_string(),
+        "discrete d: real = 1  initial mode M { again: after d -> M { d := max(0.5*d, 0.1) } }".to_string(),
+        tanks(1.9),
+    ];
+    for parts in &not_met {
+        let (told, met) = told_and_met(parts);
+        assert!(!told.contains(&"HY0627"), "{parts}: {told:?}");
+        assert_eq!(met, None, "{parts}");
+    }
 }

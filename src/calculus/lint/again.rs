@@ -7,17 +7,16 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::calculus::bounds::{Bounds, REAL};
+use crate::calculus::bounds::Bounds;
 use crate::calculus::form::FormId;
 use crate::calculus::graph::{Node, NodeId};
 use crate::calculus::lint::Warning;
-use crate::calculus::lint::effects::{Effect, before, effect, guard, nodes, plain_guard, read_by, reads};
-use crate::calculus::lint::truth::{Truth, truth};
+use crate::calculus::lint::effects::{Effect, before, effect, nodes, plain_guard, read_by, reads};
+use crate::calculus::lint::flowing::{is_false, restrictions};
 use crate::calculus::reader::Reader;
 use crate::calculus::system::{
     ActionStep, Condition, Frame, FunctionId, Guard, Relation, System, TransitionSystem,
 };
-use crate::math::Interval;
 
 /// Looks at every transition into its own mode.
 pub fn transitions(system: &System, bounds: &Bounds, found: &mut Vec<Warning>) {
@@ -88,7 +87,7 @@ impl<'s> Kept<'s> {
     ) -> Self {
         let frame = &transition.frame;
         let mut reader = Reader::new(system, bounds, frame);
-        for (leaf, interval) in restrictions(Reader::new(system, bounds, frame), guard) {
+        for (leaf, interval) in restrictions(&mut Reader::new(system, bounds, frame), guard) {
             reader.bound(leaf, interval);
         }
         let before = guard.functions().into_iter().map(|function| (function, reader.function(function)));
@@ -104,12 +103,9 @@ impl<'s> Kept<'s> {
 
     /// Whether the condition of another transition of the agent is certainly false after the actions.
     fn keeps_false(&mut self, other: &'s TransitionSystem) -> bool {
-        // Other agents would be mistaken for those of this frame.
-        let Some(guard) = guard(other).filter(|_| other.frame.slots.len() == 1) else { return false };
-        self.after.read_as(&other.frame, self.written.clone(), None);
-        let truth = truth(&mut self.after, guard, &guard.condition);
+        let is_false = is_false(&mut self.after, &self.written, other);
         self.after.read_as(self.frame, self.written.clone(), None);
-        truth == Truth::Never
+        is_false
     }
 
     /// Whether the condition is true after the actions if it was true before.
@@ -140,23 +136,4 @@ impl<'s> Kept<'s> {
         let change = forms.plus(after, -1.0, before);
         relation != Relation::Crossing && change.is_some_and(|change| forms.interval(change).hi <= 0.0)
     }
-}
-
-/// Where single states lie when the guard is true.
-fn restrictions(mut reader: Reader, guard: &Guard) -> Vec<(Node, Interval)> {
-    let mut found: Vec<(Node, Interval)> = Vec::new();
-    for term in guard.condition.conjuncts() {
-        let Condition::Atom(k) = term else { continue };
-        let form = reader.function(guard.atoms[*k].value);
-        let Some((leaf @ Node::State { slot: 0, .. }, factor, constant)) = reader.forms.as_leaf(form) else {
-            continue;
-        };
-        let bound = -constant / factor;
-        let side = if factor > 0.0 { Interval::new(REAL.lo, bound) } else { Interval::new(bound, REAL.hi) };
-        match found.iter_mut().find(|(known, _)| *known == leaf) {
-            Some((_, known)) => *known = known.intersect(side).unwrap_or(*known),
-            None => found.push((leaf, side)),
-        }
-    }
-    found
 }

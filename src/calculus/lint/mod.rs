@@ -8,12 +8,15 @@
 mod truth;
 mod effects;
 mod warning;
+mod flowing;
 mod never;
 mod hidden;
 mod again;
 mod opposite;
 mod oneself;
 mod pairs;
+mod broken;
+mod zeno;
 
 use crate::base::Diagnostic;
 use crate::calculus::growth;
@@ -30,6 +33,9 @@ pub fn lint(system: &System) -> Vec<Diagnostic> {
     opposite::transitions(system, &bounds, &mut found);
     oneself::conditions(system, &bounds, &mut found);
     pairs::conditions(system, &bounds, &mut found);
+    let starts = flowing::Starts::of(system);
+    broken::invariants(system, &bounds, &starts, &mut found);
+    zeno::transitions(system, &bounds, &starts, &mut found);
     let mut found: Vec<Diagnostic> = found.into_iter().map(Diagnostic::from).collect();
     found.sort_by_key(|diagnostic| diagnostic.labels.first().map(|label| label.span));
     found.dedup();

@@ -11,10 +11,9 @@ use crate::calculus::form::{Form, FormId, Forms};
 use crate::calculus::graph::Node;
 use crate::calculus::lint::Warning;
 use crate::calculus::lint::effects::{before, effect, plain_guard, read_by, reads};
+use crate::calculus::lint::flowing::{add_rates, derivatives};
 use crate::calculus::reader::Reader;
-use crate::calculus::system::{
-    Atom, Condition, Entry, Flow, Frame, Guard, Quantified, System, TransitionSystem,
-};
+use crate::calculus::system::{Atom, Condition, Entry, Frame, Guard, Quantified, System, TransitionSystem};
 
 /// How many transitions from one mode to another are compared with those back.
 const COMPARED_MAX: usize = 32;
@@ -124,26 +123,19 @@ impl<'s> Loop<'s> {
     /// Whether in the mode that `side` leads to, from which `back` starts, the flow makes the comparison of `side` false again.
     fn leads_back(&self, bounds: &Bounds, side: &Side<'s>, back: &TransitionSystem) -> bool {
         let ty = &self.system.types[self.number];
-        let flow = ty.modes[back.source].flow.as_ref();
-        let Some(flow) = flow.filter(|flow| flow.frame.slots.len() == 1) else { return false };
+        let Some(flow) = &ty.modes[back.source].flow else { return false };
         let mut reader = Reader::new(self.system, bounds, side.frame);
         let g = reader.function(side.atom.value);
         let mut given = FxHashMap::default();
         if let Some((leaf @ Node::State { .. }, factor, constant)) = reader.forms.as_leaf(g) {
             given.insert(leaf, reader.forms.constant(-constant / factor));
         }
-        reader.read_as(&flow.frame, given.clone(), None);
-        for (column, rate) in rates(self.system, flow).into_iter().enumerate() {
-            given.insert(Node::Rate { slot: 0, column: column as u32 }, reader.node(rate));
+        if !add_rates(&mut reader, flow, &mut given) {
+            return false;
         }
-        reader.read_as(side.frame, given, None);
-        let rate = reader.node(self.system.functions[side.atom.rates].outputs[1]);
+        let [_, rate, _] = derivatives(&mut reader, side.frame, side.atom, &given);
         reader.forms.interval(rate).lo > 0.0
     }
-}
-
-fn rates(system: &System, flow: &Flow) -> Vec<crate::calculus::graph::NodeId> {
-    system.functions[flow.rates].outputs.clone()
 }
 
 /// Where two opposite comparisons are both true.

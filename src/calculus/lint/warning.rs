@@ -1,6 +1,6 @@
 //! What is worth a warning, a variant per kind, each with its own code, and how each is told.
 
-use crate::base::{Diagnostic, Span};
+use crate::base::{Diagnostic, Span, number_text};
 use crate::calculus::system::Relation;
 
 /// A question to whoever wrote the model.
@@ -23,6 +23,14 @@ pub enum Warning {
     AllPairs { name: String, span: Span, n_pairs: usize },
     /// HY0614: who is nearest is found among all.
     AllAsked { name: String, span: Span, n_pairs: usize },
+    /// An invariant of a mode that is false as soon as it is entered by `way`: a transition, or a line of `system`.
+    Broken { mode: String, claim: Span, way: Span },
+    /// Of this and the next two: when it is over, s; infinite if that is not known. A transition that takes a part of the speed away from what bounces on its boundary.
+    Rebound { label: String, span: Span, at: f64 },
+    /// A transition that makes its own delay shorter each time.
+    Hurries { label: String, span: Span, at: f64 },
+    /// Two transitions between modes that lower what the other one raises, and together lose more than they gain.
+    RunsDry { labels: [String; 2], spans: [Span; 2], at: f64 },
 }
 
 impl From<Warning> for Diagnostic {
@@ -86,8 +94,42 @@ impl From<Warning> for Diagnostic {
                     .note("by a key that grows with a difference, as a distance does, nobody is looked at who is farther than the nearest")
                     .help("ask for somebody in a range, if that will do: `exists o in other Car: abs(o.x - x) <= 10`")
             }
+            Warning::Broken { mode, claim, way } => {
+                Diagnostic::warning("HY0626", format!("`{mode}` breaks its invariant as soon as it is entered"))
+                    .label(claim, "on its boundary or beyond then, and the flow leads further out")
+                    .label(way, "on this way in")
+                    .note("the run would stop with HY0501")
+                    .help("correct the invariant or the flow, or leave by a transition whose condition is true there")
+            }
+            Warning::Rebound { label, span, at } => zeno(&format!("`{label}` fires"), at)
+                .label(span, "each time a part of the speed is lost, and at rest the flow pushes on")
+                .help("let it come to rest: a transition into a mode without this motion, taken where it is slow (`and v > -0.01 -> Rest`)"),
+            Warning::Hurries { label, span, at } => zeno(&format!("`{label}` fires"), at)
+                .label(span, "each time the delay is shorter by a factor")
+                .help("keep the delay above a least one: `max(0.5*d, 0.01)`"),
+            Warning::RunsDry { labels: [first, second], spans, at } => {
+                zeno(&format!("`{first}` and `{second}` take turns"), at)
+                    .label(spans[0], "its mode lowers what is compared here, and raises that of the other ...")
+                    .label(spans[1], "... this one the other way round; together they lose more than they gain")
+                    .help("add a transition for the time when both have run dry, or stay in a mode for a least time: `after 0.1 when ...`")
+            }
         }
     }
+}
+
+fn zeno(what: &str, at: f64) -> Diagnostic {
+    let (title, end) = if at.is_finite() {
+        let four_digits: f64 = format!("{at:.3e}").parse().expect("it is a number");
+        let at = format!("t = {}", number_text(four_digits));
+        (
+            format!("{what} infinitely often until about {at} (Zeno)"),
+            format!("the run would stop in error (HY0505 or HY0506) at about {at}"),
+        )
+    } else {
+        let title = format!("{what} ever faster, infinitely often within a finite time (Zeno)");
+        (title, "a run that goes on for so long stops in error (HY0505 or HY0506)".to_string())
+    };
+    Diagnostic::warning("HY0627", title).note(end)
 }
 
 fn only_touches(text: String, span: Span, relation: Relation) -> Diagnostic {

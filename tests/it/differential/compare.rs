@@ -16,8 +16,10 @@ use super::generate;
 use super::modes;
 use super::reference::{self, Pace, Row};
 
-/// The reference's step, s; a model counts only if half of it makes no difference.
+/// The reference's step, s, and how closely it encloses times; a model counts only if half of the one and a tenth of the other
+/// make no difference.
 const STEP: f64 = 0.01;
+const TOLERANCE: f64 = 1e-12;
 /// How far the two may be apart, s.
 const TIME: f64 = 1e-5;
 /// How far the reference may be from itself, s.
@@ -73,8 +75,8 @@ pub fn compare(text: &str, integrator: Integrator) -> Verdict {
         Story { rows, ends: living.map(end).collect(), until, error: None }
     };
     let end = model.run.until.expect("the generator writes an end");
-    let usual = Pace { step: STEP, nudge: 0.0, wary: false };
-    let half = Pace { step: 0.5 * STEP, ..usual };
+    let usual = Pace { step: STEP, tolerance: TOLERANCE, nudge: 0.0, wary: false };
+    let half = Pace { step: 0.5 * STEP, tolerance: 0.1 * TOLERANCE, ..usual };
     let fine = refer(half);
     let mut until = agreement(&refer(usual), &fine, end);
     if until <= 0.0 {
@@ -83,7 +85,7 @@ pub fn compare(text: &str, integrator: Integrator) -> Verdict {
     let ours = engine(&model, until);
     if difference(&ours, &fine, TIME, until).is_some() {
         // The reference may have missed an event between two steps, or rounding may decide what happens.
-        let shorter = Pace { step: 0.02 * STEP, ..usual };
+        let shorter = Pace { step: 0.02 * STEP, ..half };
         let nudges = [NUDGE, -NUDGE].map(|nudge| Pace { nudge, ..half });
         for pace in [Pace { wary: true, ..half }, shorter, nudges[0], nudges[1]] {
             until = agreement(&refer(pace), &fine, until);

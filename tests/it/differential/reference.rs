@@ -115,6 +115,8 @@ struct Done {
 pub struct Pace {
     /// The length of steps, s.
     pub step: f64,
+    /// How closely the time of what happens is enclosed, in parts of the time, at least of 1 s.
+    pub tolerance: f64,
     /// How far rates are beside the truth; see [`World::nudge`].
     pub nudge: f64,
     /// Whether to give up where a guard hangs on a single point.
@@ -457,7 +459,7 @@ impl<'a> Reference<'a> {
         let (mut after, mut straight) = self.world.flow_with_branches(self.model, stop);
         if !straight || self.any_enabled(&after) {
             let mut before = self.world.time;
-            while after.time - before > 1e-13 * after.time.max(1.0) {
+            while after.time - before > pace.tolerance * after.time.max(1.0) {
                 let (middle, same) = self.world.flow_with_branches(self.model, 0.5 * (before + after.time));
                 if middle.time <= before || middle.time >= after.time {
                     break;
