@@ -148,6 +148,8 @@ impl<'p> Engine<'p, '_> {
             && folds.is_empty()
             && !self.leads_elsewhere(index, written)
             && self.value_before(kernel, &slots, written) == Some(g);
+        // A zero that is written anew from what was zero in this instant is known no better.
+        let is_there = before.slack > 0.0 && before.certified >= time;
         let mut has_side = true;
         let truth = if g.is_nan() || absent && !g.is_finite() {
             has_side = false;
@@ -173,7 +175,7 @@ impl<'p> Engine<'p, '_> {
             // Where g can jump in a way that is not known, a bound of its rounding may be the height of the jump: then its sign
             // is taken as it is.
             let rounding = if atom.smooth { self.rounding(kernel, &slots, &folds) } else { 0.0 };
-            let clear = g.abs() > if unchanged { before.slack.max(rounding) } else { rounding };
+            let clear = g.abs() > if unchanged || is_there { before.slack.max(rounding) } else { rounding };
             let along = if unchanged { before.truth } else { closed(atom.relation, before.truth) };
             let is_hazard = rule == Rule::Rates && self.is_hazard(before.instance);
             let mut decide = || {
@@ -187,7 +189,7 @@ impl<'p> Engine<'p, '_> {
                 Rule::Rates => decide(),
                 Rule::Woken if unchanged && clear => before.truth,
                 Rule::Fresh | Rule::Woken if clear => g < 0.0,
-                Rule::Woken if unchanged => decide(),
+                Rule::Woken if unchanged || is_there && before.by_rates => decide(),
                 Rule::Fresh | Rule::Woken if atom.relation == Relation::Crossing => decide(),
                 Rule::Fresh | Rule::Woken if atom.relation == Relation::Negative && atom.smooth => {
                     // The infimum of the times at which it is true is this one (rule 3), though it is not true at it.
@@ -208,6 +210,10 @@ impl<'p> Engine<'p, '_> {
         state.truth = truth;
         state.sideless = before.sideless && !has_side;
         state.touched = touched;
+        if !unchanged && g.abs() > state.slack {
+            state.slack = 0.0;
+        }
+        state.by_rates = state.slack > 0.0 && (rule == Rule::Rates || is_there && before.by_rates);
         state.rooted = enters || rule == Rule::Woken && before.rooted && unchanged;
         if state.touched || state.rooted {
             self.guards.roused.push(index as u32);

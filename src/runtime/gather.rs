@@ -264,7 +264,7 @@ impl Engine<'_, '_> {
         };
         state.truth = state.leap.map_or(!state.truth, |leap| leap.after);
         state.sideless = false;
-        state.rooted = true;
+        (state.rooted, state.by_rates) = (true, false);
         self.guards.roused.push(index as u32);
         let state = &mut self.guards.atoms[index];
         // Across a jump the rate says nothing of how near zero g is.

@@ -5,8 +5,6 @@ use hyc::model::ir::ExprId;
 use super::evaluate::{Literal, Scope};
 use super::world::World;
 
-/// A margin as small as this is on the boundary: models whose events depend on it are not robust and do not count.
-const NEAR: f64 = 1e-9;
 /// Rates below this are zero.
 const STILL: f64 = 1e-6;
 /// The distance in time of numeric rates, s.
@@ -67,7 +65,7 @@ impl Boundary {
         let mut decided = Vec::new();
         for (literal, negated) in literals {
             let (margin, closed) = margin(&mut scope, &literal, negated);
-            if margin.abs() <= NEAR {
+            if margin.abs() <= world.near {
                 let verdict = match course(&scope, world, &literal, negated) {
                     Course::In => Verdict::True,
                     Course::Out => Verdict::Held,
@@ -81,16 +79,18 @@ impl Boundary {
 
     /// The decided comparisons with the truth of the comparison as it stands, without the `not` around it.
     pub fn decided(&self, scope: &mut Scope<'_>, world: &World) -> Vec<(Literal, bool)> {
-        let still = self
-            .0
-            .iter()
-            .filter(|(literal, negated, verdict)| stands(scope, world, literal, *negated, *verdict));
-        let truth = |verdict: Verdict| match verdict {
-            Verdict::True => true,
-            Verdict::Held => false,
-            Verdict::Stays(truth) => truth,
+        let truth = |(literal, negated, verdict): &(Literal, bool, Verdict)| {
+            if !is_near(scope, literal, *negated) {
+                return None;
+            }
+            let truth = match verdict {
+                Verdict::True => true,
+                Verdict::Held => course(scope, world, literal, *negated) == Course::In,
+                Verdict::Stays(truth) => *truth,
+            };
+            Some((literal.clone(), truth != *negated))
         };
-        still.map(|(literal, negated, verdict)| (literal.clone(), truth(*verdict) != *negated)).collect()
+        self.0.iter().filter_map(truth).collect()
     }
 
     /// Whether a comparison of the guard is on its boundary without having been decided.
@@ -99,27 +99,30 @@ impl Boundary {
         scope.literals(guard, false, &mut literals);
         literals.iter().any(|(literal, negated)| {
             let settled = self.0.iter().any(|(decided, ..)| decided == literal);
-            let near = margin(&mut scope, literal, *negated).0.abs() <= NEAR;
+            let near = margin(&mut scope, literal, *negated).0.abs() <= scope.world.near;
             !settled && near
         })
     }
 
     /// What is left of it after some time.
     pub fn later(self, mut scope: Scope<'_>, world: &World) -> Self {
-        let stand = |(literal, negated, verdict): &(Literal, bool, Verdict)| {
-            *verdict != Verdict::True && stands(&mut scope, world, literal, *negated, *verdict)
+        let stands = |(literal, negated, verdict): &(Literal, bool, Verdict)| {
+            let near = is_near(&mut scope, literal, *negated);
+            match verdict {
+                Verdict::True => false,
+                Verdict::Stays(_) => near,
+                Verdict::Held => near && course(&scope, world, literal, *negated) != Course::In,
+            }
         };
-        Self(self.0.into_iter().filter(stand).collect())
+        Self(self.0.into_iter().filter(stands).collect())
+    }
+
+    /// What is true from the start on, where nothing is held: what is on its boundary and moves in.
+    pub fn fresh(self) -> Self {
+        Self(self.0.into_iter().filter(|(.., verdict)| *verdict == Verdict::True).collect())
     }
 }
 
-/// Whether a verdict still counts.
-fn stands(scope: &mut Scope<'_>, world: &World, literal: &Literal, negated: bool, verdict: Verdict) -> bool {
-    let (margin, closed) = margin(scope, literal, negated);
-    let near = margin.abs() <= NEAR;
-    let really_false = if closed { margin < 0.0 } else { margin <= 0.0 };
-    match verdict {
-        Verdict::True | Verdict::Stays(_) => near,
-        Verdict::Held => near && !really_false && course(scope, world, literal, negated) != Course::In,
-    }
+fn is_near(scope: &mut Scope<'_>, literal: &Literal, negated: bool) -> bool {
+    margin(scope, literal, negated).0.abs() <= scope.world.near
 }

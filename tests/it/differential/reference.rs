@@ -119,13 +119,15 @@ pub struct Pace {
     pub tolerance: f64,
     /// How far rates are beside the truth; see [`World::nudge`].
     pub nudge: f64,
+    /// See [`World::near`].
+    pub near: f64,
     /// Whether to give up where a guard hangs on a single point.
     pub wary: bool,
 }
 
 /// Runs a model as far as it is worth comparing. `ordered` says of an interaction whether its pairs are ordered.
 pub fn run(model: &Model, pace: Pace, ordered: impl Fn(&str) -> bool) -> History {
-    let mut reference = Reference::new(model, pace.nudge, ordered);
+    let mut reference = Reference::new(model, pace, ordered);
     let mut goes_on = reference.begin();
     let mut until = 0.0;
     while goes_on.is_some() && reference.world.time < reference.end {
@@ -140,12 +142,12 @@ pub fn run(model: &Model, pace: Pace, ordered: impl Fn(&str) -> bool) -> History
 }
 
 impl<'a> Reference<'a> {
-    fn new(model: &'a Model, nudge: f64, ordered: impl Fn(&str) -> bool) -> Self {
+    fn new(model: &'a Model, pace: Pace, ordered: impl Fn(&str) -> bool) -> Self {
         let ordered = model.interactions.iter().map(|interaction| ordered(&interaction.name)).collect();
         let end = model.run.until.expect("the generator writes an end");
         let mut reference = Self {
             model,
-            world: World::new(model, nudge),
+            world: World::new(model, pace.nudge, pace.near),
             instances: Vec::new(),
             rows: Vec::new(),
             post: Post::default(),
@@ -293,6 +295,7 @@ impl<'a> Reference<'a> {
             if self.is_active(instance) {
                 self.draw(instance);
             }
+            self.instances[instance].boundary = self.settle(instance).fresh();
         }
         self.arm();
         self.instant()
@@ -337,8 +340,12 @@ impl<'a> Reference<'a> {
     /// Agents come to be at the end of a micro-step, and those destroyed leave.
     fn turn_over(&mut self, created: &[Start], destroyed: &[usize]) {
         let born: Vec<usize> = created.iter().map(|start| self.world.add(self.model, start)).collect();
+        let known = self.instances.len();
         born.iter().for_each(|agent| self.admit(*agent));
         self.run_entries(&self.beginnings(&born));
+        for instance in known..self.instances.len() {
+            self.instances[instance].boundary = self.settle(instance).fresh();
+        }
         for agent in destroyed {
             self.world.agents[*agent].lives = false;
         }
@@ -457,8 +464,8 @@ impl<'a> Reference<'a> {
         let due = due.chain(self.post.next_time());
         let stop = due.fold(self.end.min(self.world.time + pace.step), f64::min);
         let (mut after, mut straight) = self.world.flow_with_branches(self.model, stop);
+        let mut before = self.world.time;
         if !straight || self.any_enabled(&after) {
-            let mut before = self.world.time;
             while after.time - before > pace.tolerance * after.time.max(1.0) {
                 let (middle, same) = self.world.flow_with_branches(self.model, 0.5 * (before + after.time));
                 if middle.time <= before || middle.time >= after.time {
@@ -472,11 +479,13 @@ impl<'a> Reference<'a> {
             }
         }
         if !straight {
+            // A step that ends beyond the branch has seen rates of both sides.
+            after = self.world.flow(self.model, before).flow(self.model, after.time);
             self.branchings.push(after.time);
         }
         if self.branchings.len() > MANY_BRANCHES
             || self.slides().is_some()
-            || pace.wary && self.hangs_on_a_point(after.time)
+            || pace.wary && (self.hangs_on_a_point(after.time) || self.is_false_for_a_point(before, &after))
         {
             return None;
         }
@@ -497,6 +506,16 @@ impl<'a> Reference<'a> {
         self.post.come(self.world.time);
         self.arm();
         self.instant()
+    }
+
+    /// Whether a guard that is disarmed becomes false where something else fires, which may make it true again at once.
+    fn is_false_for_a_point(&self, before: f64, after: &World) -> bool {
+        let just_before = self.world.flow(self.model, before);
+        let ends = |instance: usize| {
+            let is_disarmed = self.is_active(instance) && !self.instances[instance].armed;
+            is_disarmed && self.holds(&just_before, instance) && !self.holds(after, instance)
+        };
+        self.any_enabled(after) && (0..self.instances.len()).any(ends)
     }
 
     /// Since when a flow slides along where it branches, s.

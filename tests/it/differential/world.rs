@@ -18,6 +18,8 @@ pub struct World {
     pub agents: Vec<Agent>,
     /// What is added to the rate of state k, times k + 1: asks how robust a model is.
     pub nudge: f64,
+    /// A margin as small as this is on the boundary: models whose events depend on it are not robust and do not count.
+    pub near: f64,
 }
 
 /// What stays as it is while an agent flows.
@@ -58,8 +60,8 @@ impl Agent {
 
 impl World {
     /// The agents of `system { }` before their entry actions.
-    pub fn new(model: &Model, nudge: f64) -> Self {
-        let mut world = Self { time: 0.0, states: Vec::new(), agents: Vec::new(), nudge };
+    pub fn new(model: &Model, nudge: f64, near: f64) -> Self {
+        let mut world = Self { time: 0.0, states: Vec::new(), agents: Vec::new(), nudge, near };
         for agent in model.population.agents.iter() {
             world.add(model, agent);
         }

@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
-use crate::harness::{all_near, near, refused, simulate, simulate_by_both_forms, simulate_error};
+use hyc::model::ir::Integrator;
+
+use crate::harness::{Case, all_near, near, refused, simulate, simulate_by_both_forms, simulate_error};
 
 /// An agent with x' = v (discrete), a guard that counts, and nothing else.
 fn counting(x: &str, v: &str, guard: &str, more: &str, until: f64) -> Vec<f64> {
@@ -364,4 +366,65 @@ fn rule_03_where_a_rate_turns_the_way_to_the_right_decides() {
          system { p = A()  q = B(o = p) }  run { until 3 }",
     );
     assert_eq!(run.times("I.g"), [0.0]);
+}
+
+/// How often two transitions fire, whatever the method by which 20 agents, each from its own start, come to their boundary.
+#[track_caller]
+fn counts_of_twenty(agent: &str, labels: [&str; 2]) -> [usize; 2] {
+    let text = format!(
+        "agent A(z0: real) {{ {agent} }}
+         system {{ a = A[20](z0 = -1 + 0.0371*index) }}  run {{ until 3  tolerance 1e-11 }}"
+    );
+    let counts = [Integrator::Taylor, Integrator::Tsit5, Integrator::Adams].map(|integrator| {
+        let run = Case::new(&text).integrator(integrator).run();
+        labels.map(|label| run.times(label).len())
+    });
+    assert!(counts.iter().all(|count| *count == counts[0]), "{counts:?}");
+    counts[0]
+}
+
+#[test]
+fn rule_03_a_zero_that_is_written_from_a_zero_is_the_boundary_still() {
+    // it fires, moves in, and half of zero, or minus half of it, leaves it where it is: true, and not armed again
+    for part in ["-0.5*z", "0.5*z", "0"] {
+        let moving_in = format!(
+            "state z = z0  discrete n: int = 0  flow {{ z' = 1 + 0.1*z }}
+             reach: when z >= 0 {{ n := n + 1 }}  flip: when n >= 1 {{ z := {part} }}"
+        );
+        assert_eq!(counts_of_twenty(&moving_in, ["A.reach", "A.flip"]), [20, 20], "{part}");
+        // armed by a transition into its mode, moving out: held
+        let held = format!(
+            "state z = z0  discrete n: int = 0
+             initial mode P {{ flow {{ z' = 1 + 0.1*z }}  up: when z >= 0 -> Q {{ n := 1 }} }}
+             mode Q {{ flow {{ z' = -1 }}  back: when z >= 0 -> R }}  mode R {{ flow {{ z' = 0 }} }}
+             half: when n == 1 {{ z := {part}  n := 2 }}"
+        );
+        assert_eq!(counts_of_twenty(&held, ["A.half", "A.back"]), [20, 0], "{part}");
+        // fired, and turned back: held
+        let turned = format!(
+            "state z = z0, v = 1  discrete n: int = 0  flow {{ z' = v*(1 + 0.1*z)  v' = 0 }}
+             up: when z >= 0 {{ v := -v  n := n + 1 }}  half: when n == 1 {{ z := {part}  n := 2 }}"
+        );
+        assert_eq!(counts_of_twenty(&turned, ["A.up", "A.half"]), [20, 20], "{part}");
+    }
+}
+
+#[test]
+fn rule_03_really_false_and_back_on_the_boundary_it_fires_again() {
+    let run = simulate(
+        "agent A { state z = -1  discrete n: int = 0  flow { z' = if n <= 1 then 1 else -1 }
+                   reach: when z >= 0 { n := n + 1  z := -2 }
+                   put: when n == 1 { n := 2  z := 0 } }
+         system { a = A() }  run { until 3 }",
+    );
+    assert_eq!(run.log(), ["0 A.reach a", "1 A.put a", "2 A.reach a"]);
+    all_near(&run.event_times(), &[1.0, 1.0, 1.0], 1e-11);
+}
+
+#[test]
+fn rule_03_held_it_fires_at_zero_once_the_rate_points_in() {
+    let agent = "state z = z0, x = 1  discrete n: int = 0  flow { x' = 0  z' = x*(1 + 0.1*z) }
+                 cross: when z > 0 { x := -1  z := -0.887*z  n := n + 1 }
+                 turn: when n == 1 and x < 0 { x := 1 }";
+    assert_eq!(counts_of_twenty(agent, ["A.cross", "A.turn"]), [40, 20]);
 }

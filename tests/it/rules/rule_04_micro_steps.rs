@@ -4,6 +4,7 @@ use crate::harness::{
     Case, all_near, near, refused, simulate, simulate_by_both_forms, simulate_error, simulate_to_the_end,
     words,
 };
+use hyc::model::ir::Integrator;
 use hyc::runtime::limits::Limits;
 
 #[test]
@@ -449,4 +450,20 @@ fn rule_04_a_crossing_that_was_passed_over_is_tested_again() {
          system { a = A() }  run { until 3 }",
     );
     assert_eq!(run.log(), ["0 A.a a", "1 A.b a"]);
+}
+
+#[test]
+fn rule_04_what_was_passed_over_at_zero_is_tested_again_on_another_zero() {
+    for integrator in [Integrator::Taylor, Integrator::Tsit5, Integrator::Adams] {
+        let case = Case::new(
+            "agent A(z0: real) {
+               state z = z0, v = 1
+               flow { z' = v*(1 + 0.1*z)  v' = 0 }
+               first: when z >= 0 priority 1 { z := -0.5*z  v := -1 }
+               second: when z >= 0 { z := -1  v := -1 } }
+             system { a = A[20](z0 = -1 + 0.0371*index) }  run { until 3  tolerance 1e-11 }",
+        );
+        let run = case.integrator(integrator).run();
+        assert_eq!([run.times("A.first").len(), run.times("A.second").len()], [20, 20], "{integrator:?}");
+    }
 }
