@@ -67,6 +67,8 @@ impl Diagnostic {
 
     /// Adds a place; the first one added is the primary one.
     pub fn label(mut self, span: Span, text: impl Into<String>) -> Self {
+        // Most have one or two, and there may be very many diagnostics.
+        self.labels.reserve_exact(1);
         self.labels.push(Label { span, text: text.into() });
         self
     }

@@ -24,6 +24,7 @@ pub fn actions(
     collect_writes(draft, scope, &list.steps, &mut list.writes);
     list.writes.sort_unstable();
     list.writes.dedup();
+    list.writes.shrink_to_fit();
     Ok(list)
 }
 

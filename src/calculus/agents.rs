@@ -220,6 +220,7 @@ fn own_actions(draft: &mut Draft, ty: TypeId, steps: &[Action], name: &str) -> A
 /// Transitions of agents.
 pub fn transitions(draft: &mut Draft) {
     for (id, ty) in draft.model.types.iter_enumerated() {
+        draft.types[id.index()].transitions.reserve_exact(ty.transitions.len());
         for declared in &ty.transitions {
             let scope = Scope::of_self(id);
             let depth = ty.modes[declared.source].depth;
@@ -265,7 +266,7 @@ pub fn interactions(draft: &mut Draft) -> Vec<InteractionSystem> {
 
 fn interaction(draft: &mut Draft, declared: &Interaction) -> InteractionSystem {
     let [a, b] = &declared.participants;
-    let mut transitions = Vec::new();
+    let mut transitions = Vec::with_capacity(declared.transitions.len());
     for step in &declared.transitions {
         let scope = Scope::new(vec![(a.clone(), declared.types[0]), (b.clone(), declared.types[1])]);
         let lowered = transition(draft, scope, step, 0);

@@ -44,7 +44,9 @@ pub fn margins(draft: &mut Draft, scope: &mut Scope, expr: ExprId, name: &str) -
 pub fn finish(draft: &mut Draft, frame: &Frame, cond: Cond, name: &str) -> Guard {
     let mut numbering = Numbering { draft, frame, name, atoms: Vec::new(), nodes: Vec::new(), n_rising: 0 };
     let condition = numbering.condition(cond);
-    Guard { condition, atoms: numbering.atoms, n_rising: numbering.n_rising }
+    let Numbering { mut atoms, n_rising, .. } = numbering;
+    atoms.shrink_to_fit();
+    Guard { condition, atoms, n_rising }
 }
 
 struct Numbering<'d, 'm> {

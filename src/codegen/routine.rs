@@ -9,6 +9,7 @@ use cranelift_codegen::ir::{AbiParam, ExtFuncData, ExternalName, Function, Signa
 use cranelift_codegen::isa::CallConv;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 
+use crate::base::Idx;
 use crate::calculus::system::System;
 use crate::codegen::emit::{Callee, Emitter, Import, Leaves};
 use crate::codegen::step;
@@ -43,7 +44,7 @@ pub enum Kind {
 
 /// All routines of a system, kernels first.
 pub fn routines<'p>(system: &'p System, tapes: &'p [Arc<Tape>]) -> Vec<Routine<'p>> {
-    let name = |function: usize| system.functions.as_slice()[function].name.as_str();
+    let name = |function: usize| system.functions[Idx::new(function)].name.as_str();
     let short = tapes.iter().enumerate().filter(|(_, tape)| tape.instructions.len() <= KERNEL_LENGTH_MAX);
     let kernels =
         short.map(|(function, tape)| Routine { name: name(function), tape, kind: Kind::Kernel { function } });

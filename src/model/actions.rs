@@ -34,7 +34,10 @@ impl<'a> Context<'a> {
         list: &'a ast::Actions,
         written: &mut Written,
     ) -> Vec<Action> {
-        list.actions.iter().filter_map(|action| self.action(scope, action, written)).collect()
+        let filled = list.actions.iter().filter_map(|action| self.action(scope, action, written));
+        let mut actions: Vec<Action> = filled.collect();
+        actions.shrink_to_fit();
+        actions
     }
 
     fn action(
@@ -49,7 +52,7 @@ impl<'a> Context<'a> {
             ActionKind::Create(constructor) => self.create(scope, constructor),
             ActionKind::Destroy(agent) => self.destroy(scope, agent, span),
             ActionKind::Emit { event, args, delay } => {
-                self.emission(scope, event, args, delay.as_ref(), span)
+                self.emission(scope, event, args, delay.as_deref(), span)
             }
             ActionKind::ChangeMode { participant, target } => {
                 self.mode_change(scope, participant, target, span, written)

@@ -19,6 +19,7 @@ pub(super) fn fill_agents(context: &mut Context) {
         context.fill_modes(ty);
         context.check_flows(ty);
         context.fill_transitions(ty);
+        context.model.types[ty].shrink_to_fit();
     }
 }
 

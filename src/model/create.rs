@@ -22,7 +22,7 @@ impl<'a> Context<'a> {
         if item.count.is_some() {
             self.report(ActionError::CreatesMany { span: item.span, what: "an array" });
         }
-        let mode = self.start_mode(ty, item.start.as_ref());
+        let mode = self.start_mode(ty, item.start.as_deref());
         let names = &self.agents[ty.index()];
         let mut create = Create {
             ty,

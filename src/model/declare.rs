@@ -158,12 +158,15 @@ impl<'a> Context<'a> {
             AgentItem::Variables(_) | AgentItem::Link(_) | AgentItem::Event(_) | AgentItem::Region(_) => None,
         });
         let regions = item.items.iter().filter_map(|part| match part {
-            AgentItem::Region(region) => Some(region),
+            AgentItem::Region(region) => Some(&**region),
             AgentItem::Variables(_) | AgentItem::Link(_) | AgentItem::Event(_) | AgentItem::Body(_) => None,
         });
         self.declare_regions(ty, regions);
         self.declare_modes(ty, ModeId::new(0), body);
         self.check_regions(ty);
+        self.model.types[ty].shrink_to_fit();
+        let AgentNames { params, states, discretes, .. } = &mut self.agents[ty.index()];
+        [params, states, discretes].into_iter().for_each(Vec::shrink_to_fit);
     }
 
     fn declare_member(&mut self, ty: TypeId, name: &'a ast::Name, member: Member) {
@@ -211,7 +214,7 @@ impl<'a> Context<'a> {
         let span = item.ty.as_ref().map_or(item.name.span, |ty| ty.span);
         let most = self.model.limits.states_max;
         let (names, model) = (&mut self.agents[ty.index()], &mut self.model.types[ty]);
-        let variable = variable(&item.name, item.ty.as_ref(), slot);
+        let variable = variable(&item.name, item.ty.as_deref(), slot);
         let member = match kind {
             VariableKind::State => {
                 names.states.push(slot);

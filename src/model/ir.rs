@@ -17,6 +17,7 @@ pub use crate::model::machinery::Machinery;
 pub use crate::model::pace::{Pace, Thinning};
 
 mod action;
+mod compact;
 
 pub use action::{Action, Create, Destination, Transition, Trigger};
 

@@ -87,7 +87,7 @@ impl<'a> Context<'a> {
     fn plan(&mut self, item: &'a ast::Instance) -> Option<Plan<'a>> {
         let constructor = &item.constructor;
         let ty = self.agent_named(&constructor.agent)?;
-        let mode = self.start_mode(ty, constructor.start.as_ref());
+        let mode = self.start_mode(ty, constructor.start.as_deref());
         let names = &self.agents[ty.index()];
         let missing = |slots: &[Slot]| vec![Source::Missing; slots.len()];
         let mut plan = Plan {

@@ -55,7 +55,7 @@ impl<'a> Context<'a> {
         for number in 0..self.model.types[ty].modes.len() {
             let mode = ModeId::new(number);
             let transitions = self.mode_items(ty, mode).into_iter().filter_map(|item| match item {
-                BodyItem::Transition(item) => Some(item),
+                BodyItem::Transition(item) => Some(&**item),
                 _ => None,
             });
             items.extend(transitions.enumerate().map(|(k, item)| (mode, k + 1, item)));
@@ -131,7 +131,7 @@ impl<'a> Context<'a> {
         let mut scope = Scope::of(home);
         let heard = match &item.trigger.kind {
             TriggerKind::On { event, binders, sender } => {
-                Some(self.hearing(&mut scope, event, binders, sender.as_ref()))
+                Some(self.hearing(&mut scope, event, binders, sender.as_deref()))
             }
             TriggerKind::When | TriggerKind::After(_) | TriggerKind::Every(_) | TriggerKind::Rate(_) => None,
         };

@@ -40,7 +40,7 @@ pub(super) fn watcher<'a>(items: impl Iterator<Item = &'a Item>) -> Option<Item>
     let span = first?;
     let name = ast::Name { text: NAME.into(), span };
     let items = body.into_iter().map(AgentItem::Body).collect();
-    Some(Item::Agent(ast::Agent { name, formals: Vec::new(), items, span }))
+    Some(Item::Agent(Box::new(ast::Agent { name, formals: Vec::new(), items, span })))
 }
 
 /// Calls `visit` with every condition of a formula, in the order of the text.
@@ -56,19 +56,20 @@ fn conditions<'a>(formula: &'a ast::Formula, visit: &mut dyn FnMut(&'a ast::Expr
 }
 
 fn claim(condition: &ast::Expr) -> BodyItem {
-    BodyItem::Assert(ast::Claim { condition: condition.clone(), message: None, span: condition.span })
+    let claim = ast::Claim { condition: condition.clone(), message: None, span: condition.span };
+    BodyItem::Assert(Box::new(claim))
 }
 
 fn stop(condition: &ast::Expr, span: Span) -> BodyItem {
     let stop = ast::Action { kind: ast::ActionKind::Stop(None), span };
-    BodyItem::Transition(ast::Transition {
+    BodyItem::Transition(Box::new(ast::Transition {
         label: None,
         trigger: ast::Trigger { kind: ast::TriggerKind::When, guard: Some(condition.clone()), span },
         priority: None,
         target: None,
         actions: Some(ast::Actions { actions: vec![stop], span }),
         span,
-    })
+    }))
 }
 
 /// Fills in what the model watches; the agent is among the types.

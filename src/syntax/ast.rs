@@ -2,10 +2,8 @@
 //!
 //! Pure data; its methods only name operators: no name is resolved, no type known, no unit read. Parentheses
 //! and comments are gone. Chains of operators of one precedence (`a + b - c`, `p and q and r`) are flat lists, however
-//! long; everything else nests at most as deep as [`MAX_NESTING`](super::MAX_NESTING) allows.
-
-// Statements are few and short-lived: an allocation more for each would buy nothing.
-#![allow(clippy::large_enum_variant)]
+//! long; everything else nests at most as deep as [`MAX_NESTING`](super::MAX_NESTING) allows. A giant model has millions of nodes:
+//! what few nodes have, or what makes one kind of node much larger than the others, lies in a box.
 
 mod expr;
 mod action;
@@ -57,19 +55,19 @@ pub enum Item {
     /// `import "other.hy"`
     Import(Import),
     /// `param R: real [m] = 1.0`
-    Param(Param),
+    Param(Box<Param>),
     /// `let H = 5*N`
-    Let(Let),
+    Let(Box<Let>),
     /// `fn f(a: real) = a^2`
-    Fn(Fn),
+    Fn(Box<Fn>),
     /// `agent Car(...) { ... }`
-    Agent(Agent),
+    Agent(Box<Agent>),
     /// `interaction Bump(a: Car, b: Car) { ... }`
-    Interaction(Interaction),
+    Interaction(Box<Interaction>),
     /// `system { ... }`
     System(System),
     /// `property p = always ...`
-    Property(Property),
+    Property(Box<Property>),
     /// `run { ... }`
     Run(Run),
 }
@@ -89,7 +87,7 @@ pub struct Param {
     /// Its name.
     pub name: Name,
     /// Its declared type.
-    pub ty: Option<TypeName>,
+    pub ty: Option<Box<TypeName>>,
     /// Its value, unless the command line gives one.
     pub value: Expr,
     /// The whole item.
@@ -102,7 +100,7 @@ pub struct Let {
     /// Its name.
     pub name: Name,
     /// Its declared type.
-    pub ty: Option<TypeName>,
+    pub ty: Option<Box<TypeName>>,
     /// What it stands for.
     pub value: Expr,
     /// The whole definition.
@@ -117,7 +115,7 @@ pub struct Fn {
     /// Its formal parameters.
     pub formals: Vec<Formal>,
     /// The declared type of its value.
-    pub ty: Option<TypeName>,
+    pub ty: Option<Box<TypeName>>,
     /// Its value.
     pub body: Expr,
     /// The whole item.
@@ -132,7 +130,7 @@ pub struct Formal {
     /// Its type.
     pub ty: TypeName,
     /// The value if none is given.
-    pub default: Option<Expr>,
+    pub default: Option<Box<Expr>>,
     /// The whole declaration.
     pub span: Span,
 }
@@ -143,7 +141,7 @@ pub struct TypeName {
     /// The type's name.
     pub name: Name,
     /// Its unit.
-    pub unit: Option<UnitText>,
+    pub unit: Option<Box<UnitText>>,
     /// Both.
     pub span: Span,
 }
@@ -165,9 +163,9 @@ pub struct Interaction {
 #[derive(Clone, Debug, PartialEq)]
 pub enum InteractionItem {
     /// `let d = ...`
-    Let(Let),
+    Let(Box<Let>),
     /// `pair: when ... { ... }`
-    Transition(Transition),
+    Transition(Box<Transition>),
 }
 
 /// `system { ... }`
@@ -200,9 +198,9 @@ pub struct Constructor {
     /// Values of parameters, variables and links.
     pub args: Vec<NamedArg>,
     /// The mode in which it starts.
-    pub start: Option<Target>,
+    pub start: Option<Box<Target>>,
     /// Where the values that are not arguments come from.
-    pub source: Option<Expr>,
+    pub source: Option<Box<Expr>>,
     /// The whole constructor.
     pub span: Span,
 }

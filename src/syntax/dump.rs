@@ -45,13 +45,13 @@ impl Outline {
                 self.line(&format!(
                     "param {}{} = {}",
                     param.name.text,
-                    annotation(&param.ty),
+                    annotation(param.ty.as_deref()),
                     Flat(&param.value)
                 ));
             }
             Item::Let(definition) => self.definition(definition),
             Item::Fn(function) => {
-                self.node(&format!("fn {}{}", function.name.text, annotation(&function.ty)), |o| {
+                self.node(&format!("fn {}{}", function.name.text, annotation(function.ty.as_deref())), |o| {
                     o.formals(&function.formals);
                     o.line(&format!("= {}", Flat(&function.body)));
                 })
@@ -86,14 +86,14 @@ impl Outline {
         self.line(&format!(
             "let {}{} = {}",
             definition.name.text,
-            annotation(&definition.ty),
+            annotation(definition.ty.as_deref()),
             Flat(&definition.value)
         ));
     }
 
     fn formals(&mut self, formals: &[Formal]) {
         for formal in formals {
-            let default = clause(" = ", &formal.default);
+            let default = clause(" = ", formal.default.as_deref());
             self.line(&format!("formal {}: {}{default}", formal.name.text, type_name(&formal.ty)));
         }
     }
@@ -110,7 +110,7 @@ impl Outline {
             AgentItem::Link(link) => {
                 let target =
                     link.target.iter().map(|target| format!(": {}", target.text)).collect::<String>();
-                self.line(&format!("link {}{target}{}", link.name.text, clause(" = ", &link.value)));
+                self.line(&format!("link {}{target}{}", link.name.text, clause(" = ", link.value.as_ref())));
             }
             AgentItem::Event(event) => {
                 self.node(&format!("event {}", event.name.text), |o| o.formals(&event.formals))
@@ -124,7 +124,7 @@ impl Outline {
 
     fn variable(&mut self, variable: &Variable) {
         let initial = variable.initial.iter().map(given).collect::<String>();
-        self.line(&format!("variable {}{}{initial}", variable.name.text, annotation(&variable.ty)));
+        self.line(&format!("variable {}{}{initial}", variable.name.text, annotation(variable.ty.as_deref())));
     }
 
     fn body(&mut self, items: &[BodyItem]) {
@@ -160,7 +160,7 @@ impl Outline {
         let target = transition.target.iter().map(|to| format!(" -> {}", target(to))).collect::<String>();
         self.node(&format!("transition{label}{target}"), |o| {
             o.trigger(&transition.trigger);
-            o.labelled("priority ", &transition.priority);
+            o.labelled("priority ", transition.priority.as_deref());
             transition.actions.iter().for_each(|actions| o.actions("actions", actions));
         });
     }
@@ -173,10 +173,10 @@ impl Outline {
             TriggerKind::Rate(hazard) => self.line(&format!("rate {}", Flat(hazard))),
             TriggerKind::On { event, binders, sender } => {
                 let binders = binders.iter().map(|binder| format!(" {}", binder.text)).collect::<String>();
-                self.line(&format!("on {}{binders}{}", event.text, clause(" from ", sender)));
+                self.line(&format!("on {}{binders}{}", event.text, clause(" from ", sender.as_deref())));
             }
         }
-        self.labelled("when ", &trigger.guard);
+        self.labelled("when ", trigger.guard.as_ref());
     }
 
     fn actions(&mut self, word: &str, actions: &Actions) {
@@ -192,7 +192,11 @@ impl Outline {
             ActionKind::Destroy(agent) => self.line(&format!("destroy {}", Flat(agent))),
             ActionKind::Emit { event, args, delay } => {
                 let args = args.iter().map(|arg| format!(" {}", Flat(arg))).collect::<String>();
-                self.line(&format!("emit {}{args}{}", place_text(event), clause(" after ", delay)));
+                self.line(&format!(
+                    "emit {}{args}{}",
+                    place_text(event),
+                    clause(" after ", delay.as_deref())
+                ));
             }
             ActionKind::ChangeMode { participant, target: to } => {
                 self.line(&format!("{} -> {}", participant.text, target(to)));
@@ -230,7 +234,7 @@ impl Outline {
             for arg in &constructor.args {
                 o.line(&format!("argument {}{}", arg.name.text, given(&arg.given)));
             }
-            o.labelled("from ", &constructor.source);
+            o.labelled("from ", constructor.source.as_deref());
         });
     }
 
@@ -266,7 +270,7 @@ impl Outline {
             RunSettingKind::Record { columns, period, file } => {
                 self.node(&format!("record to {:?}", file.value), |o| {
                     columns.iter().for_each(|column| o.line(&format!("column {}", Flat(column))));
-                    o.labelled("every ", period);
+                    o.labelled("every ", period.as_ref());
                 })
             }
             RunSettingKind::Output { name, file } => self.line(&format!("{} to {:?}", name.text, file.value)),
@@ -275,14 +279,14 @@ impl Outline {
     }
 
     /// A line of a word and an expression, if there is one.
-    fn labelled(&mut self, word: &str, expr: &Option<Expr>) {
+    fn labelled(&mut self, word: &str, expr: Option<&Expr>) {
         if let Some(expr) = expr {
             self.line(&format!("{word}{}", Flat(expr)));
         }
     }
 }
 
-fn clause(word: &str, expr: &Option<Expr>) -> String {
+fn clause(word: &str, expr: Option<&Expr>) -> String {
     expr.iter().map(|expr| format!("{word}{}", Flat(expr))).collect()
 }
 
@@ -303,12 +307,12 @@ fn text_after(text: &Option<Text>) -> String {
     text.iter().map(|text| format!(" {:?}", text.value)).collect()
 }
 
-fn annotation(ty: &Option<TypeName>) -> String {
+fn annotation(ty: Option<&TypeName>) -> String {
     ty.iter().map(|ty| format!(": {}", type_name(ty))).collect()
 }
 
 fn type_name(ty: &TypeName) -> String {
-    format!("{}{}", ty.name.text, unit_after(ty.unit.as_ref()))
+    format!("{}{}", ty.name.text, unit_after(ty.unit.as_deref()))
 }
 
 fn unit_after(unit: Option<&UnitText>) -> String {

@@ -271,13 +271,13 @@ impl<'s> Agent<'s> {
                 *known = reader.forms.interval(rate);
                 *first = reader.forms.as_leaf(g).map_or(f64::NAN, |g| self.at_start(g));
             }
+            let (own, other) = if k == both[0] { (rates[0], rates[1]) } else { (rates[1], rates[0]) };
+            (REAL.lo < own.lo && own.hi < 0.0 && other.lo > 0.0).then_some(())?;
         }
         let [[a_in_a, b_in_a], [a_in_b, b_in_b]] = rates;
-        let fills = a_in_a.hi < 0.0 && b_in_b.hi < 0.0 && b_in_a.lo > 0.0 && a_in_b.lo > 0.0;
-        let finite = [a_in_a, b_in_b].iter().all(|loss| loss.lo > REAL.lo);
         // With some weight w on b the sum falls in both modes: a' + w b' < 0.
         let lost = a_in_a.hi * b_in_b.hi - a_in_b.hi * b_in_a.hi;
-        (fills && finite && lost > SLOW * a_in_b.hi * b_in_a.hi).then_some(())?;
+        (lost > SLOW * a_in_b.hi * b_in_a.hi).then_some(())?;
         // The times in the two modes after which both are zero.
         let [a, b] = first;
         let times = [b * a_in_b.hi - a * b_in_b.hi, a * b_in_a.hi - b * a_in_a.hi];

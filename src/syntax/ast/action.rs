@@ -32,7 +32,7 @@ pub enum ActionKind {
         given: Given,
     },
     /// `create Car(v = 3)`
-    Create(Constructor),
+    Create(Box<Constructor>),
     /// `destroy self`
     Destroy(Expr),
     /// `emit braking(3) after 1 [s]`
@@ -42,7 +42,7 @@ pub enum ActionKind {
         /// What it carries.
         args: Vec<Expr>,
         /// When it is delivered.
-        delay: Option<Expr>,
+        delay: Option<Box<Expr>>,
     },
     /// `a -> Avoid`, in an interaction
     ChangeMode {
@@ -75,7 +75,7 @@ pub struct Branch {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
     /// The agent before the dot.
-    pub owner: Option<Name>,
+    pub owner: Option<Box<Name>>,
     /// The variable, or the event.
     pub variable: Name,
     /// Both.

@@ -22,11 +22,11 @@ pub enum AgentItem {
     /// `state x, y` or `discrete lane: int`
     Variables(Variables),
     /// `link lead = nearest ...`
-    Link(Link),
+    Link(Box<Link>),
     /// `event braking`
-    Event(Event),
+    Event(Box<Event>),
     /// A set of modes in parallel to others.
-    Region(Region),
+    Region(Box<Region>),
     /// What modes may hold too.
     Body(BodyItem),
 }
@@ -57,7 +57,7 @@ pub struct Variable {
     /// Its name.
     pub name: Name,
     /// Its declared type.
-    pub ty: Option<TypeName>,
+    pub ty: Option<Box<TypeName>>,
     /// Its initial value.
     pub initial: Option<Given>,
     /// The whole declaration.
@@ -121,21 +121,21 @@ pub struct Region {
 #[derive(Clone, Debug, PartialEq)]
 pub enum BodyItem {
     /// `let gap = ...`
-    Let(Let),
+    Let(Box<Let>),
     /// `flow { x' = v }`
     Flow(Flow),
     /// `invariant v >= 0 "why"`
-    Invariant(Claim),
+    Invariant(Box<Claim>),
     /// `assert gap > 0 "why"`
-    Assert(Claim),
+    Assert(Box<Claim>),
     /// `mode Brake { ... }`
-    Mode(Mode),
+    Mode(Box<Mode>),
     /// `entry { ... }`
     Entry(Actions),
     /// `exit { ... }`
     Exit(Actions),
     /// `leave: when ... -> ... { ... }`
-    Transition(Transition),
+    Transition(Box<Transition>),
 }
 
 /// `flow { x' = v }`
@@ -190,7 +190,7 @@ pub struct Transition {
     /// When it fires.
     pub trigger: Trigger,
     /// Its rank among those that fire at once.
-    pub priority: Option<Expr>,
+    pub priority: Option<Box<Expr>>,
     /// The mode that it leads to.
     pub target: Option<Target>,
     /// What it does.
@@ -228,7 +228,7 @@ pub enum TriggerKind {
         /// The names that the event's values get.
         binders: Vec<Name>,
         /// Whose event.
-        sender: Option<Expr>,
+        sender: Option<Box<Expr>>,
     },
 }
 

@@ -23,7 +23,7 @@ impl Builder<'_> {
             Rule::assignment => self.assignment(parts)?,
             Rule::create => {
                 parts.expect(Rule::kw_create)?;
-                ActionKind::Create(self.constructor(parts.expect(Rule::constructor)?)?)
+                ActionKind::Create(Box::new(self.constructor(parts.expect(Rule::constructor)?)?))
             }
             Rule::destroy => {
                 parts.expect(Rule::kw_destroy)?;
@@ -55,7 +55,7 @@ impl Builder<'_> {
         let mut parts = Parts::of(piece);
         let first = self.name(parts.expect(Rule::name)?);
         Ok(if parts.has(Rule::dot)? {
-            Place { owner: Some(first), variable: self.name(parts.expect(Rule::name)?), span }
+            Place { owner: Some(Box::new(first)), variable: self.name(parts.expect(Rule::name)?), span }
         } else {
             Place { owner: None, variable: first, span }
         })
@@ -66,7 +66,7 @@ impl Builder<'_> {
         let event = self.place(parts.expect(Rule::place)?)?;
         let args = parts.next_if(Rule::call_args)?.map(|args| self.call_args(args)).transpose()?;
         let delay = match parts.has(Rule::kw_after)? {
-            true => Some(self.time(parts.expect(Rule::expr)?)?),
+            true => Some(Box::new(self.time(parts.expect(Rule::expr)?)?)),
             false => None,
         };
         Ok(ActionKind::Emit { event, args: args.unwrap_or_default(), delay })

@@ -21,9 +21,9 @@ impl Builder<'_> {
     fn agent_item(&mut self, piece: Piece<'_>) -> Result<Option<AgentItem>, Unread> {
         Ok(Some(match piece.rule() {
             Rule::variables => AgentItem::Variables(self.variables(piece)?),
-            Rule::link => AgentItem::Link(self.link(piece)?),
-            Rule::event => AgentItem::Event(self.event(piece)?),
-            Rule::region => AgentItem::Region(self.region(piece)?),
+            Rule::link => AgentItem::Link(Box::new(self.link(piece)?)),
+            Rule::event => AgentItem::Event(Box::new(self.event(piece)?)),
+            Rule::region => AgentItem::Region(Box::new(self.region(piece)?)),
             _ => return Ok(self.body_item(piece)?.map(AgentItem::Body)),
         }))
     }
@@ -83,14 +83,14 @@ impl Builder<'_> {
     /// What stands in a mode, a region or an agent; none for braces.
     fn body_item(&mut self, piece: Piece<'_>) -> Result<Option<BodyItem>, Unread> {
         Ok(Some(match piece.rule() {
-            Rule::definition => BodyItem::Let(self.definition(piece)?),
+            Rule::definition => BodyItem::Let(Box::new(self.definition(piece)?)),
             Rule::flow => BodyItem::Flow(self.flow(piece)?),
-            Rule::invariant => BodyItem::Invariant(self.claim(piece)?),
-            Rule::assertion => BodyItem::Assert(self.claim(piece)?),
-            Rule::mode => BodyItem::Mode(self.mode(piece)?),
+            Rule::invariant => BodyItem::Invariant(Box::new(self.claim(piece)?)),
+            Rule::assertion => BodyItem::Assert(Box::new(self.claim(piece)?)),
+            Rule::mode => BodyItem::Mode(Box::new(self.mode(piece)?)),
             Rule::entry => BodyItem::Entry(self.hook(piece)?),
             Rule::exit => BodyItem::Exit(self.hook(piece)?),
-            Rule::transition => BodyItem::Transition(self.transition(piece)?),
+            Rule::transition => BodyItem::Transition(Box::new(self.transition(piece)?)),
             _ => return Ok(None),
         }))
     }
@@ -146,7 +146,7 @@ impl Builder<'_> {
         let label = parts.next_if(Rule::name)?.map(|name| self.name(name));
         parts.has(Rule::colon)?;
         let trigger = self.trigger(parts.expect(Rule::trigger)?)?;
-        let priority = self.expr_after(&mut parts, Rule::kw_priority)?;
+        let priority = self.expr_after(&mut parts, Rule::kw_priority)?.map(Box::new);
         let target = match parts.has(Rule::arrow)? {
             true => Some(self.target(parts.expect(Rule::target)?)?),
             false => None,
@@ -175,7 +175,8 @@ impl Builder<'_> {
                 }
                 None => Vec::new(),
             };
-            return Ok(TriggerKind::On { event, binders, sender: self.expr_after(parts, Rule::kw_from)? });
+            let sender = self.expr_after(parts, Rule::kw_from)?.map(Box::new);
+            return Ok(TriggerKind::On { event, binders, sender });
         }
         let time = self.time(parts.expect(Rule::expr)?)?;
         Ok(match word {

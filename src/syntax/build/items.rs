@@ -17,13 +17,13 @@ impl Builder<'_> {
     pub(super) fn item(&mut self, piece: Piece<'_>) -> Result<Item, Unread> {
         match piece.rule() {
             Rule::import => self.import(piece).map(Item::Import),
-            Rule::param => self.param(piece).map(Item::Param),
-            Rule::definition => self.definition(piece).map(Item::Let),
-            Rule::function => self.function(piece).map(Item::Fn),
-            Rule::agent => self.agent(piece).map(Item::Agent),
-            Rule::interaction => self.interaction(piece).map(Item::Interaction),
+            Rule::param => self.param(piece).map(|item| Item::Param(Box::new(item))),
+            Rule::definition => self.definition(piece).map(|item| Item::Let(Box::new(item))),
+            Rule::function => self.function(piece).map(|item| Item::Fn(Box::new(item))),
+            Rule::agent => self.agent(piece).map(|item| Item::Agent(Box::new(item))),
+            Rule::interaction => self.interaction(piece).map(|item| Item::Interaction(Box::new(item))),
             Rule::system => self.system(piece).map(Item::System),
-            Rule::property => self.property(piece).map(Item::Property),
+            Rule::property => self.property(piece).map(|item| Item::Property(Box::new(item))),
             Rule::run => self.run(piece).map(Item::Run),
             _ => Err(Unread),
         }
@@ -77,7 +77,7 @@ impl Builder<'_> {
         let name = self.name(parts.expect(Rule::name)?);
         parts.expect(Rule::colon)?;
         let ty = self.type_name(parts.expect(Rule::type_name)?)?;
-        Ok(Formal { name, ty, default: self.expr_after(&mut parts, Rule::equals)?, span })
+        Ok(Formal { name, ty, default: self.expr_after(&mut parts, Rule::equals)?.map(Box::new), span })
     }
 
     fn interaction(&mut self, piece: Piece<'_>) -> Result<Interaction, Unread> {
@@ -87,8 +87,8 @@ impl Builder<'_> {
         let name = self.name(parts.expect(Rule::name)?);
         let formals = self.formals(parts.expect(Rule::formals)?)?;
         let items = self.many_of(parts, |this, part| match part.rule() {
-            Rule::definition => Ok(Some(InteractionItem::Let(this.definition(part)?))),
-            Rule::transition => Ok(Some(InteractionItem::Transition(this.transition(part)?))),
+            Rule::definition => Ok(Some(InteractionItem::Let(Box::new(this.definition(part)?)))),
+            Rule::transition => Ok(Some(InteractionItem::Transition(Box::new(this.transition(part)?)))),
             _ => Ok(None),
         })?;
         Ok(Interaction { name, formals, items, span })
@@ -118,10 +118,10 @@ impl Builder<'_> {
         let count = parts.next_if(Rule::count)?.map(|count| self.count(count)).transpose()?;
         let args = parts.next_if(Rule::named_args)?.map(|args| self.named_args(args)).transpose()?;
         let start = match parts.has(Rule::kw_in)? {
-            true => Some(self.plain_target(parts.expect(Rule::target)?)?),
+            true => Some(Box::new(self.plain_target(parts.expect(Rule::target)?)?)),
             false => None,
         };
-        let source = self.expr_after(&mut parts, Rule::kw_from)?;
+        let source = self.expr_after(&mut parts, Rule::kw_from)?.map(Box::new);
         Ok(Constructor { agent, count, args: args.unwrap_or_default(), start, source, span })
     }
 

@@ -148,16 +148,16 @@ impl Builder<'_> {
         let span = self.span(&piece);
         let mut parts = Parts::of(piece);
         let name = self.name(parts.expect(Rule::name)?);
-        let unit = parts.next_if(Rule::unit)?.map(|unit| self.unit(unit));
+        let unit = parts.next_if(Rule::unit)?.map(|unit| Box::new(self.unit(unit)));
         Ok(TypeName { name, unit, span })
     }
 
     /// `(colon ~ type_name)?`
-    fn type_annotation(&mut self, parts: &mut Parts<'_>) -> Result<Option<TypeName>, Unread> {
+    fn type_annotation(&mut self, parts: &mut Parts<'_>) -> Result<Option<Box<TypeName>>, Unread> {
         if !parts.has(Rule::colon)? {
             return Ok(None);
         }
-        self.type_name(parts.expect(Rule::type_name)?).map(Some)
+        Ok(Some(Box::new(self.type_name(parts.expect(Rule::type_name)?)?)))
     }
 
     /// `(word ~ expr)?`

@@ -51,12 +51,12 @@ impl Writer<'_> {
     pub(super) fn item(&mut self, item: &Item) {
         match item {
             Item::Import(import) => self.up_to(import.span.end),
-            Item::Param(param) => self.binding(&param.ty, &param.value),
-            Item::Let(definition) => self.binding(&definition.ty, &definition.value),
+            Item::Param(param) => self.binding(param.ty.as_deref(), &param.value),
+            Item::Let(definition) => self.binding(definition.ty.as_deref(), &definition.value),
             Item::Fn(function) => {
                 self.up_to(function.name.span.end);
                 self.formals(&function.formals);
-                self.binding(&function.ty, &function.body);
+                self.binding(function.ty.as_deref(), &function.body);
             }
             Item::Agent(agent) => {
                 self.up_to(agent.name.span.end);
@@ -67,7 +67,9 @@ impl Writer<'_> {
                 self.up_to(interaction.name.span.end);
                 self.formals(&interaction.formals);
                 self.braces(Braces::Block, &interaction.items, interaction_item_span, |w, item| match item {
-                    InteractionItem::Let(definition) => w.binding(&definition.ty, &definition.value),
+                    InteractionItem::Let(definition) => {
+                        w.binding(definition.ty.as_deref(), &definition.value)
+                    }
                     InteractionItem::Transition(transition) => w.transition(transition),
                 });
             }
@@ -94,13 +96,13 @@ impl Writer<'_> {
     }
 
     /// A type, `=` and a value.
-    fn binding(&mut self, ty: &Option<TypeName>, value: &Expr) {
+    fn binding(&mut self, ty: Option<&TypeName>, value: &Expr) {
         self.annotation(ty);
         self.value(value);
     }
 
-    fn annotation(&mut self, ty: &Option<TypeName>) {
-        if let Some(unit) = ty.as_ref().and_then(|ty| ty.unit.as_ref()) {
+    fn annotation(&mut self, ty: Option<&TypeName>) {
+        if let Some(unit) = ty.and_then(|ty| ty.unit.as_ref()) {
             self.unit(unit.span);
         }
     }
@@ -119,7 +121,7 @@ impl Writer<'_> {
     }
 
     /// An expression, if there is one, before which a line may end.
-    fn clause(&mut self, expr: &Option<Expr>) {
+    fn clause(&mut self, expr: Option<&Expr>) {
         if let Some(expr) = expr {
             self.close_parens();
             self.may_continue();
@@ -166,7 +168,7 @@ impl Writer<'_> {
                 self.comma();
                 self.may_begin_item();
             }
-            self.annotation(&variable.ty);
+            self.annotation(variable.ty.as_deref());
             variable.initial.iter().for_each(|given| self.whole(&given.value));
             self.up_to(variable.span.end);
         }
@@ -179,7 +181,7 @@ impl Writer<'_> {
 
     fn body_item(&mut self, item: &BodyItem) {
         match item {
-            BodyItem::Let(definition) => self.binding(&definition.ty, &definition.value),
+            BodyItem::Let(definition) => self.binding(definition.ty.as_deref(), &definition.value),
             BodyItem::Flow(flow) => {
                 self.word();
                 self.braces(
@@ -215,7 +217,7 @@ impl Writer<'_> {
         self.open(true);
         self.up_to(transition.trigger.span.start);
         self.trigger(&transition.trigger);
-        self.clause(&transition.priority);
+        self.clause(transition.priority.as_deref());
         if let Some(target) = &transition.target {
             self.close_parens();
             self.may_continue();
@@ -239,10 +241,10 @@ impl Writer<'_> {
             TriggerKind::After(time) | TriggerKind::Every(time) | TriggerKind::Rate(time) => self.whole(time),
             TriggerKind::On { event, binders, sender } => {
                 self.up_to(binders.last().map_or(event.span, |binder| binder.span).end);
-                self.clause(sender);
+                self.clause(sender.as_deref());
             }
         }
-        self.clause(&trigger.guard);
+        self.clause(trigger.guard.as_ref());
     }
 
     fn actions(&mut self, actions: &Actions) {
@@ -259,7 +261,7 @@ impl Writer<'_> {
                 if self.peek() == "(" {
                     self.exprs(args);
                 }
-                self.clause(delay);
+                self.clause(delay.as_deref());
             }
             ActionKind::If { branches, otherwise } => {
                 for branch in branches {
@@ -292,7 +294,7 @@ impl Writer<'_> {
             self.may_continue();
             self.up_to(mode.span.end);
         }
-        self.clause(&constructor.source);
+        self.clause(constructor.source.as_deref());
         self.up_to(constructor.span.end);
         self.close();
     }
@@ -342,7 +344,7 @@ impl Writer<'_> {
                     self.may_continue();
                     self.whole(column);
                 }
-                self.clause(period);
+                self.clause(period.as_ref());
                 self.close_parens();
                 self.may_continue();
                 self.up_to(setting.span.end);
