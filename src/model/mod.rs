@@ -71,6 +71,7 @@ mod lint;
 pub use diagram::{Arrow, Diagram, ModeBox, diagrams};
 pub use dump::dump;
 pub use ir::Model;
+pub use run::SETTINGS;
 pub use shared::shared_places;
 
 use crate::base::{Diagnostic, FileId, SourceMap};

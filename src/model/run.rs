@@ -13,8 +13,8 @@ use super::types::{Slot, Ty};
 use crate::base::Span;
 use crate::syntax::ast::{self, ExprKind, Item, RunSettingKind};
 
-/// All settings.
-const KNOWN: [&str; 19] = [
+/// The settings of `run { }`.
+pub const SETTINGS: [&str; 19] = [
     "until",
     "tolerance",
     "absolute",
@@ -254,7 +254,7 @@ impl<'a> Context<'a> {
     }
 
     fn unknown_setting(&mut self, name: &ast::Name) {
-        let similar = closest(&name.text, KNOWN);
+        let similar = closest(&name.text, SETTINGS);
         self.report(RunError::Unknown { name: name.text.clone(), span: name.span, similar });
     }
 
