@@ -126,7 +126,7 @@ fn traces_of_model(arguments: &PlotArguments) -> Result<(Option<Traces>, Exit), 
         }
     };
     refuse_endless(&model)?;
-    let (cast, diagrams) = (cast_of(&program), model::diagrams(&model, &sources));
+    let (cast, diagrams) = (cast_of(&model, &program), model::diagrams(&model, &sources));
     let mut film = Film::new(&model, &program, &cast, &diagrams);
     let mut tables = Tables::new(&cast);
     film.begin(&mut program, &mut tables);

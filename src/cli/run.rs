@@ -21,7 +21,7 @@ use super::{Exit, Refused, claims};
 use crate::base::render::{Colours, render};
 use crate::base::{Diagnostic, SourceMap};
 use crate::calculus;
-use crate::codegen::program::Program;
+use crate::codegen::program::{Column, Program};
 use crate::codegen::{self, Backend};
 use crate::model::ir::Integrator;
 use crate::model::machinery::{BackendName, Named as _};
@@ -71,7 +71,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit, Refused> {
         (code_of(backend), code_seconds),
     ];
 
-    let cast = cast_of(&program);
+    let cast = cast_of(&model, &program);
     let diagrams = model::diagrams(&model, &sources);
     let page_wanted = arguments.outputs.report.is_some();
     let mut film = page_wanted.then(|| Film::new(&model, &program, &cast, &diagrams));
@@ -255,7 +255,7 @@ pub(super) fn conclude(outcome: &Outcome, sources: &SourceMap, asserts: AssertLe
 }
 
 /// The names of the program's agents and columns.
-pub(super) fn cast_of(program: &Program) -> Cast {
+pub(super) fn cast_of(model: &Model, program: &Program) -> Cast {
     let mut agents = vec![String::new(); program.population.agents.len()];
     for block in &program.population.blocks {
         for k in 0..block.count {
@@ -263,10 +263,14 @@ pub(super) fn cast_of(program: &Program) -> Cast {
                 if block.array { format!("{}[{k}]", block.name) } else { block.name.clone() };
         }
     }
-    let types = program.types.iter().map(|ty| TypeColumns {
+    let divided = model::divided_names(model);
+    let names = |id, columns: &[Column]| {
+        columns.iter().map(|column| model::column_name(model, id, &column.name, &divided)).collect()
+    };
+    let types = model.types.indices().zip(&program.types).map(|(id, ty)| TypeColumns {
         name: ty.name.clone(),
-        states: ty.states.iter().map(|column| column.name.clone()).collect(),
-        discretes: ty.discretes.iter().map(|column| column.name.clone()).collect(),
+        states: names(id, &ty.states),
+        discretes: names(id, &ty.discretes),
         discrete_kinds: ty.discretes.iter().map(kind_of).collect(),
     });
     Cast { agents, types: types.collect() }

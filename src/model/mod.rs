@@ -56,6 +56,7 @@ mod plan;
 mod reference;
 mod population;
 mod make;
+mod columns;
 mod record;
 mod run;
 mod watch;
@@ -68,9 +69,11 @@ mod diagram;
 mod shared;
 mod lint;
 
+pub use columns::{column_name, divided_names};
 pub use diagram::{Arrow, Diagram, ModeBox, diagrams};
 pub use dump::dump;
 pub use ir::Model;
+pub use run::SETTINGS;
 pub use shared::shared_places;
 
 use crate::base::{Diagnostic, FileId, SourceMap};

@@ -2,11 +2,14 @@
 //!
 //! Without a variable an item stands for all states and discrete variables.
 
+use std::collections::BTreeSet;
+
 use rustc_hash::FxHashMap;
 
+use super::columns::{Measure, column_name, divided_names, is_kept, measure};
 use super::context::{Context, Global, GlobalKind, Home, Scope};
 use super::error::{LimitError, RunError, SystemError};
-use super::ir::{Pace, Record, TypeId, VarRef};
+use super::ir::{Pace, Record, TypeId};
 use super::suggest::closest;
 use super::types::Ty;
 use crate::base::Span;
@@ -20,8 +23,8 @@ pub(super) struct Choice {
     blocks: Vec<bool>,
     /// Numbers of single agents, in any order.
     agents: Vec<usize>,
-    /// For each type, for each recordable name in declared order, whether it is wanted.
-    variables: Vec<Vec<bool>>,
+    /// For each type, for each recordable name in declared order, the item that wants it.
+    variables: Vec<Vec<Option<Span>>>,
     /// The blocks by their names.
     by_name: FxHashMap<String, usize>,
     /// For each type, the places of its recordable names; none until somebody asks.
@@ -31,7 +34,7 @@ pub(super) struct Choice {
 impl<'a> Context<'a> {
     /// A choice of nothing.
     pub fn nothing_chosen(&self) -> Choice {
-        let variables = self.model.types.iter().map(|ty| vec![false; ty.declared.len()]).collect();
+        let variables = self.model.types.iter().map(|ty| vec![None; ty.declared.len()]).collect();
         let names = self.model.population.blocks.iter().enumerate().map(|(k, block)| (block.name.clone(), k));
         Choice {
             types: vec![false; self.model.types.len()],
@@ -68,9 +71,9 @@ impl<'a> Context<'a> {
         };
         let Some(ty) = ty else { return };
         match variable {
-            None => self.choose_variables(ty, choice),
+            None => self.choose_variables(ty, item.span, choice),
             Some(variable) => match self.place_of(ty, &variable.text, choice) {
-                Some(place) => choice.variables[ty.index()][place] = true,
+                Some(place) => choice.variables[ty.index()][place] = Some(item.span),
                 // A `let` that is wrong is not there, and has been reported.
                 None if self.agents[ty.index()].members.contains_key(variable.text.as_str()) => {}
                 None => self.no_member(ty, variable),
@@ -148,27 +151,80 @@ impl<'a> Context<'a> {
         }
     }
 
-    fn choose_variables(&self, ty: TypeId, choice: &mut Choice) {
+    fn choose_variables(&self, ty: TypeId, item: Span, choice: &mut Choice) {
         let declared = self.model.types[ty].declared.iter();
         for (wanted, (_, variable)) in choice.variables[ty.index()].iter_mut().zip(declared) {
-            *wanted |= matches!(variable, VarRef::State(_) | VarRef::Discrete(_));
+            if is_kept(*variable) {
+                wanted.get_or_insert(item);
+            }
         }
     }
 
-    /// Adds all agents of a type, with their states and discrete variables.
-    pub fn choose_type(&self, ty: TypeId, choice: &mut Choice) {
-        self.choose_agents(ty, choice);
-        self.choose_variables(ty, choice);
+    /// The record of all agents, with their states and discrete variables: where types have one name in different units, each of them has a
+    /// column of its own.
+    pub fn everything(&mut self, pace: Pace) -> Option<Record> {
+        let mut choice = self.nothing_chosen();
+        for ty in self.model.visible_types() {
+            self.choose_agents(ty, &mut choice);
+            self.choose_variables(ty, Span::default(), &mut choice);
+        }
+        let divided = divided_names(&self.model);
+        self.recorded(choice, &divided, pace, None, Span::default())
     }
 
-    /// The record that a choice comes to; none, and a diagnostic, if that has too many cells.
-    pub fn chosen(&mut self, choice: Choice, pace: Pace, file: Option<String>, span: Span) -> Option<Record> {
+    /// The record that a choice comes to; none, and a diagnostic, if one of its columns would have two units, or if it has too many cells.
+    pub fn chosen(&mut self, choice: Choice, pace: Pace, file: &str, span: Span) -> Option<Record> {
+        let errors = self.two_units(&choice);
+        let is_sound = errors.is_empty();
+        errors.into_iter().for_each(|error| self.report(error));
+        let record = self.recorded(choice, &BTreeSet::new(), pace, Some(file.to_string()), span);
+        record.filter(|_| is_sound)
+    }
+
+    /// Columns for which types give different units, each once.
+    fn two_units(&self, choice: &Choice) -> Vec<RunError> {
+        let mut first: FxHashMap<&str, Option<(Measure<'_>, &str, Span)>> = FxHashMap::default();
+        let mut errors = Vec::new();
+        for (ty, wanted) in self.model.types.iter().zip(&choice.variables) {
+            for ((name, variable), wanted) in ty.declared.iter().zip(wanted) {
+                let (Some(span), Some(measure)) = (*wanted, measure(&self.model, ty, *variable)) else {
+                    continue;
+                };
+                let this = (measure, ty.name.as_str(), span);
+                let known = first.entry(name).or_insert(Some(this));
+                // what has been told is not told again
+                let Some(other) = *known else { continue };
+                if other.0.goes_with(&measure) {
+                    // a unit says more than none
+                    *known = Some(if other.0.unit.is_none() { this } else { other });
+                    continue;
+                }
+                let sides = [other, this]
+                    .map(|(measure, ty, span)| (ty.to_string(), measure.unit.map(str::to_string), span));
+                let one_kind = other.0.is_of_one_kind_with(&measure);
+                errors.push(RunError::TwoUnits { column: name.clone(), sides, one_kind });
+                *known = None;
+            }
+        }
+        errors
+    }
+
+    fn recorded(
+        &mut self,
+        choice: Choice,
+        divided: &BTreeSet<String>,
+        pace: Pace,
+        file: Option<String>,
+        span: Span,
+    ) -> Option<Record> {
         let Choice { types: born, blocks, mut agents, variables: wanted, .. } = choice;
         let mut columns: Vec<String> = Vec::new();
-        let mut column_of: FxHashMap<&str, usize> = FxHashMap::default();
-        for (ty, wanted) in self.model.types.iter().zip(&wanted) {
-            for ((name, _), _) in ty.declared.iter().zip(wanted).filter(|(_, wanted)| **wanted) {
-                column_of.entry(name).or_insert_with(|| {
+        let mut column_of: FxHashMap<String, usize> = FxHashMap::default();
+        for (id, wanted) in self.model.types.indices().zip(&wanted) {
+            let declared = self.model.types[id].declared.iter().zip(wanted);
+            for ((name, _), _) in declared.filter(|(_, wanted)| wanted.is_some()) {
+                let name = column_name(&self.model, id, name, divided);
+                column_of.entry(name).or_insert_with_key(|name| {
                     columns.push(name.clone());
                     columns.len() - 1
                 });
@@ -190,16 +246,16 @@ impl<'a> Context<'a> {
         }
         agents.extend(whole.into_iter().flatten());
         agents.sort_unstable();
-        let of_type = |(ty, wanted): (&super::ir::AgentType, &Vec<bool>)| {
+        let of_type = |(id, wanted): (TypeId, &Vec<Option<Span>>)| {
             let mut variables = vec![None; columns.len()];
-            for ((name, variable), wanted) in ty.declared.iter().zip(wanted).rev() {
-                if let Some(&column) = column_of.get(name.as_str()) {
-                    variables[column] = wanted.then_some(*variable);
+            for ((name, variable), wanted) in self.model.types[id].declared.iter().zip(wanted).rev() {
+                if let Some(&column) = column_of.get(&column_name(&self.model, id, name, divided)) {
+                    variables[column] = wanted.map(|_| *variable);
                 }
             }
             variables
         };
-        let variables = self.model.types.iter().zip(&wanted).map(of_type).collect();
+        let variables = self.model.types.indices().zip(&wanted).map(of_type).collect();
         Some(Record { agents, born, columns, variables, pace, file, span })
     }
 }

@@ -6,15 +6,15 @@ use super::Settings;
 use super::context::{Context, Home, Scope};
 use super::dimension::Dimension;
 use super::error::{FileError, LimitError, RunError};
-use super::ir::{Pace, Record};
+use super::ir::Pace;
 use super::machinery::Named;
 use super::suggest::closest;
 use super::types::{Slot, Ty};
 use crate::base::Span;
 use crate::syntax::ast::{self, ExprKind, Item, RunSettingKind};
 
-/// All settings.
-const KNOWN: [&str; 19] = [
+/// The settings of `run { }`.
+pub const SETTINGS: [&str; 19] = [
     "until",
     "tolerance",
     "absolute",
@@ -128,7 +128,7 @@ pub(super) fn trajectories<'a>(context: &mut Context<'a>, items: &[&'a Item], se
         }
     }
     if settings.record_all && context.model.run.records.is_empty() {
-        let record = context.record_of_everything();
+        let record = context.everything(Pace::EveryStep);
         context.model.run.records.extend(record);
     }
 }
@@ -254,7 +254,7 @@ impl<'a> Context<'a> {
     }
 
     fn unknown_setting(&mut self, name: &ast::Name) {
-        let similar = closest(&name.text, KNOWN);
+        let similar = closest(&name.text, SETTINGS);
         self.report(RunError::Unknown { name: name.text.clone(), span: name.span, similar });
     }
 
@@ -326,15 +326,7 @@ impl<'a> Context<'a> {
         }
         self.file_name(file);
         let pace = every.map_or(Pace::EveryStep, Pace::Every);
-        let record = self.chosen(choice, pace, Some(file.value.clone()), span);
+        let record = self.chosen(choice, pace, &file.value, span);
         self.model.run.records.extend(record);
-    }
-
-    fn record_of_everything(&mut self) -> Option<Record> {
-        let mut choice = self.nothing_chosen();
-        for ty in self.model.visible_types() {
-            self.choose_type(ty, &mut choice);
-        }
-        self.chosen(choice, Pace::EveryStep, None, Span::default())
     }
 }

@@ -17,9 +17,9 @@ pub struct Cast {
 pub struct TypeColumns {
     /// Name of the type.
     pub name: String,
-    /// Names of the states.
+    /// The columns of the states in tables of all agents.
     pub states: Vec<String>,
-    /// Names of the discrete variables.
+    /// Those of the discrete variables.
     pub discretes: Vec<String>,
     /// What the discrete variables hold.
     pub discrete_kinds: Vec<Kind>,

@@ -4,8 +4,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::palette::colour;
-use super::sheet::{Failed, INK, LEFT, NAMED_MAX, WIDTH, below_rows, clipped, line_style, rgb};
+use super::sheet::{Failed, INK, LEFT, NAMED_MAX, WIDTH, band_styles, below_rows, clipped, line_style};
 use super::traces::Traces;
 
 /// The height of a row.
@@ -39,7 +38,9 @@ where
                 }
                 Entry::Mode(mode) => {
                     let corners = [(x, y - 6), (x + 14, y + 6)];
-                    area.draw(&Rectangle::new(corners, rgb(colour(mode)).mix(0.55).filled()))?;
+                    for style in band_styles(mode) {
+                        area.draw(&Rectangle::new(corners, style))?;
+                    }
                 }
             }
             area.draw(&Text::new(name, (x + 28, y), style.clone()))?;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::layered::{Edge, Layout, Point, Size, lay_out};
-use super::palette::{colour, hex};
+use super::palette::{ON_DARK, ON_LIGHT, declared, variable};
 use crate::model::{Arrow, Diagram};
 
 /// The advance of a monospace character and the height of a line, at a font of 11 px.
@@ -49,10 +49,10 @@ pub fn modes_svg(diagrams: &[Diagram], theme: Theme) -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"modes\" width=\"{width:.0}\" height=\"{height:.0}\" \
          viewBox=\"0 0 {width:.0} {height:.0}\" role=\"img\" aria-label=\"Modes of the agent types\">\n"
     );
-    svg.push_str(match theme {
-        Theme::Own => OWN_THEME,
-        Theme::Page => "",
-    });
+    match theme {
+        Theme::Own => svg.push_str(&own_theme()),
+        Theme::Page => {}
+    }
     svg.push_str(STYLE);
     let mut x = APART;
     for picture in &pictures {
@@ -63,13 +63,18 @@ pub fn modes_svg(diagrams: &[Diagram], theme: Theme) -> String {
     svg
 }
 
-const OWN_THEME: &str = "<style>
-svg.modes { --ink: #1b1f24; --faint: #6b7480; --paper: #ffffff; --inside: #f6f7f9; background: var(--paper) }
-@media (prefers-color-scheme: dark) {
-  svg.modes { --ink: #e6e8eb; --faint: #9aa4af; --paper: #15181c; --inside: #1d2126 }
-}
+fn own_theme() -> String {
+    let (light, dark) = (declared(&ON_LIGHT), declared(&ON_DARK));
+    format!(
+        "<style>
+svg.modes {{ --ink: #1b1f24; --faint: #6b7480; --paper: #ffffff; --inside: #f6f7f9; {light} background: var(--paper) }}
+@media (prefers-color-scheme: dark) {{
+  svg.modes {{ --ink: #e6e8eb; --faint: #9aa4af; --paper: #15181c; --inside: #1d2126; {dark} }}
+}}
 </style>
-";
+"
+    )
+}
 
 const STYLE: &str = "<style>
 .modes rect { fill: var(--inside); stroke: var(--faint); stroke-width: 1 }
@@ -244,7 +249,7 @@ impl<'a> Picture<'a> {
             ),
         );
         if let Some(number) = frame.colour {
-            let fill = hex(colour(number));
+            let fill = variable(number);
             let bar = height - 8.0;
             put(
                 svg,

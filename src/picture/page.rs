@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use super::highlight::highlighted;
 use super::modes_svg::{Theme, escaped, modes_svg};
-use super::palette::{COLOURS, colour, hex};
+use super::palette::{ON_DARK, ON_LIGHT, declared};
 use super::recording::Recording;
 use crate::model::Diagram;
 
@@ -113,7 +113,7 @@ pub fn page(scene: &Scene<'_>) -> String {
         }
         match part {
             "TITLE" => html += &escaped(scene.title),
-            "CSS" => html += STYLE,
+            "CSS" => html += &style(),
             "UPLOT_CSS" => html += UPLOT_STYLE,
             "UPLOT_JS" => html += UPLOT_SCRIPT,
             "JS" => html += &format!("\"use strict\";\n(() => {{\n{}}})();\n", SCRIPT.concat()),
@@ -124,6 +124,11 @@ pub fn page(scene: &Scene<'_>) -> String {
         }
     }
     html
+}
+
+/// The style sheet, with the colours of marks where its themes say which ones they have.
+fn style() -> String {
+    STYLE.replace("--marks: light;", &declared(&ON_LIGHT)).replace("--marks: dark;", &declared(&ON_DARK))
 }
 
 /// The files one below the other, each with a tab if there are several.
@@ -181,8 +186,7 @@ fn data(scene: &Scene<'_>) -> Value {
         "columns": columns.collect::<Vec<_>>(),
         "modes": base64(modes),
         "modeNames": recording.modes,
-        "modeColours": (0..recording.modes.len()).map(|mode| hex(colour(mode))).collect::<Vec<_>>(),
-        "palette": COLOURS.map(hex),
+        "nColours": ON_LIGHT.len(),
         "events": events.collect::<Vec<_>>(),
         "nEvents": recording.n_events,
         "transitions": recording.transitions,

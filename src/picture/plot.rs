@@ -11,9 +11,9 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::bitmap::Bitmap;
 use super::legend::{legend, legend_height};
 use super::lines::{Resolution, stretches};
-use super::palette::colour;
 use super::sheet::{
-    FAINT, Failed, INK, LEFT, LINE, MARGIN, NAMED_MAX, WIDTH, below_rows, clipped, line_style, rgb, shortened,
+    FAINT, Failed, INK, LEFT, LINE, MARGIN, NAMED_MAX, WIDTH, band_styles, below_rows, clipped, line_style,
+    shortened,
 };
 use super::traces::{Trace, Traces};
 
@@ -271,9 +271,8 @@ where
         .draw()?;
     for (row, trace) in traces.agents.iter().enumerate() {
         for (from, to, mode) in bands(trace) {
-            let fill = rgb(colour(mode)).mix(0.55).filled();
-            let corners = [(from, row as f64 + 0.12), (to, row as f64 + 0.88)];
-            chart.draw_series([Rectangle::new(corners, fill)])?;
+            let corners = [(from, row as f64 + 0.2), (to, row as f64 + 0.8)];
+            chart.draw_series(band_styles(mode).map(|style| Rectangle::new(corners, style)))?;
         }
     }
     let half = if traces.agents.len() <= 60 { 0.42 } else { 0.9 };

@@ -2,7 +2,7 @@
 
 use plotters::prelude::*;
 
-use super::palette::{Colour, colour};
+use super::palette::{CROWD, Colour, colour};
 use super::traces::Traces;
 
 /// Points across.
@@ -31,8 +31,13 @@ pub(super) fn rgb([red, green, blue]: Colour) -> RGBColor {
 pub(super) fn line_style(traces: &Traces, agent: usize) -> ShapeStyle {
     match traces.agents.len() {
         n if n <= NAMED_MAX => rgb(colour(agent)).stroke_width(2),
-        n => rgb(colour(0)).mix((12.0 / n as f64).clamp(0.15, 0.7)).stroke_width(1),
+        _ => rgb(CROWD.0).mix(CROWD.1).stroke_width(1),
     }
+}
+
+/// How a mode is marked: a ground on which events can be seen, and a border that can be seen itself.
+pub(super) fn band_styles(mode: usize) -> [ShapeStyle; 2] {
+    [rgb(colour(mode)).mix(0.4).filled(), rgb(colour(mode)).stroke_width(1)]
 }
 
 /// A picture could not be drawn: why.

@@ -97,7 +97,7 @@ fn a_model_an_event_log_and_a_plane_are_drawn_as_svg_and_png() {
     }
     // the first two agents' colours
     let (counts, _) = points(folder, "plane.png");
-    assert!(counts[&[0x00, 0x72, 0xb2]] > 200 && counts[&[0xe6, 0x9f, 0x00]] > 200);
+    assert!(counts[&[0x00, 0x72, 0xb2]] > 200 && counts[&[0xb8, 0x7a, 0x00]] > 200);
     let plane = read(folder, "plane.svg");
     assert!(plane.contains("x, m") && plane.contains("y, m"));
     // both axes have one scale: `slow` goes 45 degrees up
@@ -212,9 +212,9 @@ fn lines_that_jump_are_the_same_in_both_forms() {
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut pixels).unwrap();
     let at = |x: usize, y: usize| &pixels[3 * (y * info.width as usize + x)..][..3];
-    let colour = [0xe6, 0x9f, 0x00];
+    let colour = [0xb8, 0x7a, 0x00];
     let svg = lines(&read(folder, "ring.svg"));
-    let (_, line) = svg.iter().find(|(stroke, points)| stroke == "#E69F00" && points.len() > 100).unwrap();
+    let (_, line) = svg.iter().find(|(stroke, points)| stroke == "#B87A00" && points.len() > 100).unwrap();
     // down at each wrap
     let jumps: Vec<_> = line.windows(2).filter(|pair| pair[1].1 - pair[0].1 > 50.0).collect();
     assert_eq!(jumps.len(), 6);

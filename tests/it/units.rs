@@ -394,6 +394,62 @@ fn a_bare_literal_a_csv_cell_a_p_value_and_an_output_column_are_in_the_declared_
     assert_eq!(last[2][4..].join(","), "33.3,87.6,7.3");
 }
 
+/// A name that two types declare in different units; others that go together.
+const TWO_UNITS: &str = "\
+agent Plane { state x: real [km] = 1, v: real [m/s] = 200  discrete n = 1  flow { x' = v  v' = 0 } }
+agent Truck { state x: real [m] = 5, v = 20  discrete n = 2  flow { x' = v  v' = 0 } }
+system { plane = Plane()  truck = Truck() }
+";
+
+#[test]
+fn a_column_has_one_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    let hyc = |words: &[&str]| {
+        let done = Command::new(env!("CARGO_BIN_EXE_hyc")).args(words).current_dir(folder.path()).output();
+        let done = done.unwrap();
+        (done.status.code(), String::from_utf8_lossy(&done.stderr).into_owned())
+    };
+    let model = |run: &str| fs::write(folder.path().join("way.hy"), format!("{TWO_UNITS}{run}")).unwrap();
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    // in one file they are refused, whatever does not belong there is
+    for items in ["Plane.x, Truck.x", "plane, truck", "truck.v, Plane.v, truck.x, Plane"] {
+        model(&format!("run {{ until 1  record {items} every 1 to \"way.csv\" }}"));
+        for command in ["check", "run"] {
+            let (code, told) = hyc(&[command, "way.hy"]);
+            assert!(code == Some(1) && told.matches("error[HY0290]").count() == 1, "{items}: {told}");
+            assert!(told.contains("two files") && !folder.path().join("way.csv").exists(), "{items}: {told}");
+        }
+    }
+    // in two files each is in its own
+    model(
+        "run { until 1  record plane every 1 to \"plane.csv\"  record truck, Plane.n, plane.v every 1 to \"truck.csv\" }",
+    );
+    assert_eq!(hyc(&["run", "way.hy", "-q"]), (Some(0), String::new()));
+    assert!(
+        read("plane.csv").starts_with("time,micro,agent,mode,x,v,n\n0,0,plane,,1,200,1\n1,0,plane,,1.2,")
+    );
+    let truck = read("truck.csv");
+    assert!(
+        truck.starts_with("time,micro,agent,mode,v,n,x\n0,0,plane,,200,1,\n0,0,truck,,20,2,5\n"),
+        "{truck}"
+    );
+    // where all is recorded each has a column
+    model("run { until 1 }");
+    let words = ["run", "way.hy", "-q", "--record", "all.csv", "--final", "last.csv", "--report", "way.html"];
+    assert_eq!(hyc(&words), (Some(0), String::new()));
+    let all = read("all.csv");
+    let begin = "time,micro,agent,mode,Plane.x,v,n,Truck.x\n0,0,plane,,1,200,1,\n0,0,truck,,,20,2,5\n";
+    assert!(all.starts_with(begin), "{all}");
+    let last = read("last.csv");
+    let [head, plane, truck] = last.lines().collect::<Vec<_>>()[..] else { panic!("{last}") };
+    assert_eq!(head, "time,agent,mode,Plane.x,v,n,Truck.x");
+    assert!(plane.starts_with("1,plane,,1.2") && plane.ends_with(",200,1,"), "{plane}");
+    assert_eq!(truck, "1,truck,,,20,2,25");
+    assert!(read("way.html").contains("\"x, km\"") && read("way.html").contains("\"x, m\""));
+    assert_eq!(hyc(&["plot", "way.hy"]), (Some(0), String::new()));
+    assert!(read("way.svg").contains("x, km") && read("way.svg").contains("x, m\n"));
+}
+
 #[test]
 fn what_is_worked_out_from_bare_literals_alone_is_in_the_declared_unit() {
     let run = Case::new(

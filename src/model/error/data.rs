@@ -376,6 +376,9 @@ pub(in crate::model) enum RunError {
     StepSize { name: String, span: Span },
     /// Something that has nothing to record.
     NotRecordable { found: String, span: Span, similar: Option<String> },
+    /// A column whose numbers would be in two units: those of two types, by their names, with the units that these declare, if any; and
+    /// whether one unit would do for both.
+    TwoUnits { column: String, sides: [(String, Option<String>, Span); 2], one_kind: bool },
 }
 
 impl From<RunError> for Diagnostic {
@@ -411,6 +414,23 @@ impl From<RunError> for Diagnostic {
                         unknown.help("record `cars`, `cars[3]`, `Car`, or one variable: `cars.x`, `Car.x`")
                     }
                 }
+            }
+            RunError::TwoUnits { column, sides: [first, second], one_kind } => {
+                let told = |unit: &Option<String>| match unit {
+                    Some(unit) => format!("in {unit}"),
+                    None => "in SI, as it has no unit".to_string(),
+                };
+                let label = |(ty, unit, _): &(String, Option<String>, Span)| format!("`{ty}.{column}` is {}", told(unit));
+                let (at_first, at_second) = (label(&first), label(&second));
+                let otherwise = if one_kind { "declare both in one unit" } else { "name one of them otherwise" };
+                let units = [&first, &second].map(|(_, unit, _)| unit.as_deref().unwrap_or("SI"));
+                Diagnostic::error("HY0290", format!("the column `{column}` would have two units: {} and {}", units[0], units[1]))
+                    .label(second.2, at_second)
+                    .label(first.2, at_first)
+                    .help(format!(
+                        "record them to two files, `record {}.{column} to \"...\"` and `record {}.{column} to \"...\"`, or {otherwise}",
+                        first.0, second.0
+                    ))
             }
         }
     }

@@ -5,7 +5,6 @@ const chartsMost = 6, bandsMost = 24;
 const charted = data.columns.map((_, c) => c).filter(c => data.columns[c].chart);
 // distances of marks on an axis of whole numbers
 const whole = [0, 1, 2, 3, 4, 5, 6, 7, 8].flatMap(power => [1, 2, 5].map(step => step*10**power));
-const palette = data.palette;
 const hasModes = data.modeNames.length > 1;
 const lengthOf = list => Math.max(0, ...(list ?? []).map(text => text.length));
 function select(agents) {
@@ -71,11 +70,13 @@ function bands(chart, agents) {
   const { left, top, width, height } = chart.bbox, ctx = chart.ctx;
   ctx.save(); ctx.beginPath(); ctx.rect(left, top, width, height); ctx.clip();
   if (agents.length === 1) {
-    ctx.globalAlpha = 0.16;
+    // a pale ground, and below it a strip that can be seen
+    const strip = 4*(devicePixelRatio || 1);
     for (const [from, to, mode] of stretches(agents[0])) {
       const x0 = chart.valToPos(from, "x", true), x1 = chart.valToPos(to, "x", true);
-      ctx.fillStyle = data.modeColours[mode] ?? "#888";
-      ctx.fillRect(x0, top, x1 - x0, height);
+      ctx.fillStyle = colourOf(mode);
+      ctx.globalAlpha = 0.16; ctx.fillRect(x0, top, x1 - x0, height);
+      ctx.globalAlpha = 1; ctx.fillRect(x0, top + height - strip, x1 - x0, strip);
     }
   }
   ctx.globalAlpha = 0.8; ctx.strokeStyle = css("--ink"); ctx.lineWidth = 1;
@@ -86,7 +87,7 @@ function bands(chart, agents) {
     const x = chart.valToPos(event[0], "x", true);
     if (x - last < 2) continue;
     last = x;
-    ctx.beginPath(); ctx.moveTo(x, top + height); ctx.lineTo(x, top + height - 7*(devicePixelRatio || 1)); ctx.stroke();
+    ctx.beginPath(); ctx.moveTo(x, top + height); ctx.lineTo(x, top + height - 9*(devicePixelRatio || 1)); ctx.stroke();
   }
   ctx.restore();
 }
@@ -103,10 +104,11 @@ function drawBands() {
   agents.forEach((agent, n) => {
     ctx.fillStyle = css("--faint"); ctx.fillText(data.agents[agent], 2, n*row + 14, left - 8);
     for (const [from, to, mode] of stretches(agent)) {
-      ctx.fillStyle = data.modeColours[mode] ?? "#888"; ctx.globalAlpha = 0.6;
-      ctx.fillRect(X(from), n*row + 3, X(to) - X(from), row - 6);
+      // a ground on which events can be seen, and a border that can be seen itself
+      ctx.fillStyle = ctx.strokeStyle = colourOf(mode);
+      ctx.globalAlpha = 0.4; ctx.fillRect(X(from), n*row + 4, X(to) - X(from), row - 8);
+      ctx.globalAlpha = 1; ctx.strokeRect(X(from) + 0.5, n*row + 4.5, Math.max(X(to) - X(from) - 1, 0), row - 9);
     }
-    ctx.globalAlpha = 1;
   });
   ctx.fillStyle = css("--ink");
   for (const event of events) for (const agent of [event[2], event[3]]) if (rowOf.has(agent)) ctx.fillRect(X(event[0]), rowOf.get(agent)*row + 1, 1, row - 2);

@@ -40,10 +40,10 @@ const drawn = new Set(modes);
 data.modeNames.forEach((name, m) => {
   if (!drawn.has(m)) return;
   const item = document.createElement("span");
-  const shape = shapes[m % shapes.length], fill = data.modeColours[m];
+  const shape = shapes[m % shapes.length], fill = `var(--c${m % data.nColours})`;
   const drawing = { circle: "<circle cx='7' cy='7' r='5'/>", triangle: "<path d='M7 1L13 12H1z'/>", square: "<rect x='2' y='2' width='10' height='10'/>",
     diamond: "<path d='M7 1L13 7L7 13L1 7z'/>", cross: "<path d='M5 1h4v4h4v4h-4v4h-4v-4h-4v-4h4z'/>", star: "<path d='M7 0L9 5L14 5L10 8L12 14L7 10L2 14L4 8L0 5L5 5z'/>" }[shape];
-  item.innerHTML = `<svg width="14" height="14" fill="${fill}">${drawing}</svg>`;
+  item.innerHTML = `<svg width="14" height="14" style="fill:${fill}">${drawing}</svg>`;
   item.append(name);
   $("legend").append(item);
 });
@@ -89,12 +89,14 @@ $("events").onkeydown = event => {
   event.preventDefault(); event.stopPropagation();
 };
 document.querySelectorAll("#tabs button").forEach((tab, k) => { tab.onclick = () => openText(k); });
+function repaint() { readColours(); select(selected); }
 $("help").onclick = () => $("keys").showModal();
 $("theme").onclick = () => {
   const dark = getComputedStyle(document.documentElement).colorScheme === "dark";
   document.documentElement.dataset.theme = dark ? "light" : "dark";
-  select(selected);
+  repaint();
 };
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
 canvas.addEventListener("wheel", event => { event.preventDefault(); zoom(Math.exp(-event.deltaY*0.0015), [event.offsetX, event.offsetY]); }, { passive: false });
 let held = null;
 canvas.onpointerdown = event => { held = [event.offsetX, event.offsetY, view.x, view.y]; canvas.setPointerCapture(event.pointerId); };
@@ -127,4 +129,4 @@ function asked() {
   return location.hash && Number.isFinite(t) ? t : begin;
 }
 addEventListener("hashchange", () => setTime(asked()));
-list(); select(few); fit(); setTime(asked());
+readColours(); list(); select(few); fit(); setTime(asked());

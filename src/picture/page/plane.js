@@ -3,6 +3,7 @@
 const canvas = $("plane"), pen = canvas.getContext("2d");
 let across = data.across, up = data.up, trails = true, names = false;
 let view = null; // centre and pixels a unit
+const rimsMost = 2000;
 const shapes = ["circle", "triangle", "square", "diamond", "cross", "star"];
 const labelOf = column => column === TIME ? "time, s" : column === NUMBER ? "number of the agent" : data.columns[column].label;
 const isWhole = column => column === NUMBER || Boolean(data.columns[column]?.whole);
@@ -69,7 +70,7 @@ function drawPlane() {
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   pen.clearRect(0, 0, box.width, box.height);
   const X = x => box.width/2 + (x - view.x)*view.sx, Y = y => box.height/2 - (y - view.y)*view.sy;
-  const ink = css("--ink");
+  const ink = css("--ink"), paper = css("--inside");
   pen.font = "11px system-ui, sans-serif";
   drawGrid(box, X, Y);
   if (!nTimes) return;
@@ -88,6 +89,8 @@ function drawPlane() {
     const [x, y] = placed(agent);
     if (!(x > -20 && x < box.width + 20 && y > -20 && y < box.height + 20)) continue;
     path(shapes[modeAt(agent, k) % shapes.length] ?? "circle", x, y, size);
+    // a rim in the colour of the paper sets it off from trails
+    if (nAgents <= rimsMost) { pen.lineWidth = 2; pen.strokeStyle = paper; pen.stroke(); }
     pen.fillStyle = colour(agent, k); pen.fill();
     const isSelected = selected.includes(agent);
     if (isSelected) { pen.lineWidth = 2; pen.strokeStyle = ink; pen.stroke(); }
@@ -130,7 +133,7 @@ function drawGrid(box, X, Y) {
 function drawTrails(k, X, Y) {
   // so many points of each trail as can be drawn in time
   const length = Math.min(k, Math.floor(60000/Math.max(nAgents, 1)), 150);
-  pen.lineWidth = 1.2; pen.globalAlpha = 0.45;
+  pen.lineWidth = 1;
   for (let agent = 0; agent < nAgents; agent++) {
     if (place(agent, k) < 0) continue;
     pen.strokeStyle = colour(agent, k); pen.beginPath();
@@ -150,7 +153,6 @@ function drawTrails(k, X, Y) {
     to(valueAt(across, agent, k, now), valueAt(up, agent, k, now));
     pen.stroke();
   }
-  pen.globalAlpha = 1;
 }
 // What is to be seen, in words.
 function tellPlane(k) {

@@ -22,7 +22,14 @@ function place(agent, k) {
 }
 const value = (column, at) => values[column][at] + data.columns[column].middle;
 const modeAt = (agent, k) => { const at = place(agent, k); return at < 0 ? -1 : modes[at]; };
-const colour = (agent, k) => data.modeColours[modeAt(agent, k)] ?? "#888";
+// The colours of marks in the theme at hand.
+let palette = [], colourless = "";
+function readColours() {
+  palette = Array.from({ length: data.nColours }, (_, n) => css("--c" + n));
+  colourless = css("--faint");
+}
+const colourOf = mode => data.modeNames[mode] === undefined ? colourless : palette[mode % palette.length];
+const colour = (agent, k) => colourOf(modeAt(agent, k));
 
 // A number in few digits; `digits` of them count.
 function number(x, digits = 6) {
