@@ -11,9 +11,7 @@ use crate::calculus::error::Error;
 use crate::calculus::graph::NodeId;
 use crate::calculus::system::{Frame, Range, Slot};
 use crate::model::ir::{BinderId, ExprId, Model, TypeId};
-
-/// How many agents one frame may read (HY0304).
-pub const SLOTS_MAX: usize = 256;
+use crate::model::limits::REACHED_MAX;
 
 /// What an expression has become.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -172,8 +170,8 @@ impl Scope {
 
     /// Adds a slot.
     pub fn add(&mut self, slot: Slot, span: Span) -> Result<usize, Error> {
-        if self.frame.slots.len() >= SLOTS_MAX {
-            return Err(Error::TooManySlots { limit: SLOTS_MAX, span });
+        if self.frame.slots.len() >= REACHED_MAX {
+            return Err(Error::TooManySlots { limit: REACHED_MAX, span });
         }
         self.frame.slots.push(slot);
         Ok(self.frame.slots.len() - 1)

@@ -63,6 +63,9 @@ pub const INLINED_STEPS_MAX: u64 = 10_000_000;
 /// How deep calls inside calls are measured again for their dimensions.
 pub const INLINED_DEPTH_MAX: usize = 64;
 
+/// How many agents an expression can reach, by links, quantifiers and the sets of flows (HY0304).
+pub const REACHED_MAX: usize = 256;
+
 /// How many branches an `if ... else if ...` among actions may have.
 pub const BRANCHES_MAX: usize = 256;
 

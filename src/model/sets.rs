@@ -9,7 +9,9 @@ use std::sync::Arc;
 use rustc_hash::FxHashSet;
 
 use super::context::Context;
+use super::error::LimitError;
 use super::ir::{AgentType, ExprId, ExprKind, Link, Set, Trigger, Type, TypeId};
+use super::limits::REACHED_MAX;
 use super::membership::Named;
 use super::operands::for_each_operand;
 use crate::base::Span;
@@ -88,6 +90,10 @@ fn link_all(context: &mut Context, ty: TypeId, set: Named, room: usize, span: Sp
     };
     let members: Vec<usize> = within.filter(|&number| agents[number].ty == of).collect();
     let count = members.len();
+    if count + room > 2 * REACHED_MAX {
+        // No equation can read them: they would only take memory, by the square of their number.
+        return context.report(LimitError::Reached { count: count + room, most: REACHED_MAX, span });
+    }
     let present = members.iter().map(|&number| model.population.agent_name(number));
     let names: Vec<String> = present.chain((count..count + room).map(|k| format!("member {k}"))).collect();
     let links = names.into_iter().map(|name| Link { name, ty: of, required: false, cases: Vec::new(), span });

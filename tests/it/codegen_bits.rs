@@ -204,7 +204,7 @@ fn a_whole_step_has_the_bits_of_its_formula() {
     for _ in 0..20 {
         let (mut graph, functions) = random_functions(&mut dice, 40);
         // Rates may read states, time and auxiliary columns of slot 0.
-        let outputs = functions.as_slice()[0].outputs.iter().copied();
+        let outputs = functions[hyc::base::Idx::new(0)].outputs.iter().copied();
         let allowed = outputs.filter(|&node| reads_slot_zero_only(&graph, node)).collect::<Vec<_>>();
         let first = graph.intern(Node::State { slot: 0, column: 0 });
         let rates = (0..N_COLUMNS).map(|i| allowed.iter().rev().nth(i).copied().unwrap_or(first)).collect();

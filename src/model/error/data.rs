@@ -287,6 +287,8 @@ pub(in crate::model) enum LimitError {
     Configurations { agent: String, count: usize, most: usize, span: Span },
     /// More rows of a table than the limit.
     TableRows { most: usize, span: Span },
+    /// A set that is more than an expression can reach.
+    Reached { count: usize, most: usize, span: Span },
     /// More cells of one sample than the limit.
     Cells { most: usize, span: Span },
     /// More samples of a record than the limit.
@@ -330,6 +332,12 @@ impl From<LimitError> for Diagnostic {
                 Diagnostic::error("HY0289", format!("a table of more than {most} rows"))
                     .label(span, "each row is a kink of what reads it")
                     .help(raise("max_table_rows"))
+            }
+            LimitError::Reached { count, most, span } => {
+                Diagnostic::error("HY0304", "an expression that reaches too many agents")
+                    .label(span, format!("{count} of a set, those who may join it included"))
+                    .note(format!("the limit is {most} agents bound by quantifiers or reached by links"))
+                    .help("range over fewer agents, or read what a `discrete` keeps of them")
             }
             LimitError::Cells { most, span } => {
                 Diagnostic::error("HY0299", format!("a sample of more than {most} cells"))

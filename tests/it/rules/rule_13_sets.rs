@@ -2,7 +2,7 @@
 
 use hyc::base::SourceMap;
 
-use crate::harness::{Case, near, simulate, simulate_by_both_forms, simulate_error, words};
+use crate::harness::{Case, near, refused, simulate, simulate_by_both_forms, simulate_error, words};
 
 /// x_k' = sum (x_o - x_k) over all n: the mean stays, and the way to it shrinks by exp(-n t).
 #[test]
@@ -178,4 +178,10 @@ fn rule_13_a_set_in_a_flow_has_a_limit() {
     let model = many.model(&mut SourceMap::default()).unwrap();
     let found = words(&hyc::calculus::derive(&model).unwrap_err());
     assert!(found.contains("limit is 256"), "{found}");
+    // ... that is asked for before there are so many links
+    let very_many = refused(
+        "agent A { state x = 0  flow { x' = sum o in A: o.x - x } }
+         system { a = A[100000]() }  run { until 1 }",
+    );
+    assert!(very_many.contains("100000 of a set") && very_many.contains("limit is 256"), "{very_many}");
 }
