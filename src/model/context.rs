@@ -7,10 +7,10 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Files;
 use super::evaluate::Evaluator;
+use super::findings::Findings;
 use super::ir::{
     BinderId, Expr, ExprId, ExprKind, FunctionId, InteractionId, ModeId, Model, Operands, TypeId, VarRef,
 };
-use super::limits;
 use super::operands::for_each_operand;
 use super::quantities::Quantities;
 use super::types::{Quantity, Slot, Ty};
@@ -303,7 +303,7 @@ pub(super) struct Context<'a> {
     /// Something imported could not be read, so what seems to be missing may be there.
     pub imports: bool,
     /// What has been found wrong.
-    pub diagnostics: Vec<Diagnostic>,
+    pub findings: Findings,
     /// Evaluates constants, within a budget.
     pub evaluator: Evaluator,
 }
@@ -332,27 +332,25 @@ impl<'a> Context<'a> {
             overrides: settings.params.clone(),
             from_data: FxHashSet::default(),
             imports: false,
-            diagnostics: Vec::new(),
+            findings: Findings::default(),
             evaluator: Evaluator::new(settings.limits.evaluations_max),
         }
     }
 
     /// Adds a diagnostic.
     pub fn report(&mut self, error: impl Into<Diagnostic>) {
-        self.diagnostics.push(error.into());
+        self.findings.push(error.into());
     }
 
     /// Whether anything is wrong so far.
     pub fn has_errors(&self) -> bool {
-        self.diagnostics.iter().any(Diagnostic::is_error)
+        self.findings.has_errors()
     }
 
     /// The outcome, its diagnostics in the order of the text.
-    pub fn finish(mut self, warnings: Vec<Diagnostic>) -> super::Checked {
-        self.diagnostics.sort_by_key(|diagnostic| diagnostic.labels.first().map(|label| label.span));
-        self.diagnostics.dedup();
+    pub fn finish(self, warnings: Vec<Diagnostic>) -> super::Checked {
         let model = if self.has_errors() { None } else { Some(self.model) };
-        let (diagnostics, warnings) = (first_of(self.diagnostics), first_of(warnings));
+        let (diagnostics, warnings) = (self.findings.told(), Findings::from(warnings).told());
         if model.is_some() {
             let labels = || diagnostics.iter().chain(&warnings).flat_map(|diagnostic| &diagnostic.labels);
             for &data in self.opened.values() {
@@ -497,18 +495,4 @@ impl<'a> Context<'a> {
         }
         result
     }
-}
-
-/// As many diagnostics as anybody reads, errors before all else, and how many more there are.
-fn first_of(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    let count = diagnostics.len();
-    if count > limits::DIAGNOSTICS_MAX {
-        diagnostics.sort_by_key(|diagnostic| !diagnostic.is_error());
-        diagnostics.truncate(limits::DIAGNOSTICS_MAX);
-        let more = format!("{} more like these are not shown", count - limits::DIAGNOSTICS_MAX);
-        if let Some(last) = diagnostics.last_mut() {
-            last.notes.push(more);
-        }
-    }
-    diagnostics
 }

@@ -221,7 +221,7 @@ impl<'a> Context<'a> {
                 model.states.push(variable);
                 if model.states.len() == most.saturating_add(1) {
                     let (agent, span) = (model.name.clone(), item.name.span);
-                    self.diagnostics.push(LimitError::States { agent, most, span }.into());
+                    self.findings.push(LimitError::States { agent, most, span }.into());
                 }
                 Member::State(model.states.len() - 1)
             }

@@ -68,7 +68,7 @@ impl<'a> Context<'a> {
     fn columns(&mut self, file: FileId, column: &str, named: Span, span: Span) -> Option<[Vec<f64>; 2]> {
         let text = &self.sources.file(file).text;
         let header = table::read_header(file, text);
-        let header = header.map_err(|error| self.diagnostics.push(error.into())).ok()?;
+        let header = header.map_err(|error| self.findings.push(error.into())).ok()?;
         let Some(number) = header.columns.iter().position(|(name, _)| name == column) else {
             let similar = closest(column, header.columns.iter().map(|(name, _)| name.as_str()));
             let (name, file) = (column.to_string(), self.sources.file(file).name.clone());
@@ -115,7 +115,7 @@ impl<'a> Context<'a> {
                 Err(FileError::Unreadable { path: name.clone(), why: table::reason(&error), span: path.span })
             }
         };
-        let file = opened.map_err(|error| self.diagnostics.push(error.into())).ok()?;
+        let file = opened.map_err(|error| self.findings.push(error.into())).ok()?;
         self.opened.insert(name, file);
         Some(file)
     }
@@ -124,9 +124,9 @@ impl<'a> Context<'a> {
     fn text_or_report(&mut self, expr: &'a ast::Expr, what: &str) -> Option<String> {
         let text = self.text_of(expr);
         if text.is_none() {
-            let errors = self.diagnostics.len();
+            let errors = self.findings.count();
             let value = self.lower(&mut Scope::of(Home::File), expr);
-            if self.diagnostics.len() == errors && value.ty != Ty::Text {
+            if self.findings.count() == errors && value.ty != Ty::Text {
                 let found = self.describe(value.ty);
                 let (what, expected) = (what.to_string(), "a text".to_string());
                 self.report(TypeError::Mismatch { what, expected, found, span: expr.span, help: None });

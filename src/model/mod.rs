@@ -27,6 +27,7 @@ mod operands;
 mod order;
 mod mentions;
 mod evaluate;
+mod findings;
 mod context;
 mod slot;
 mod modes;
@@ -133,7 +134,7 @@ pub fn check(ast: &Ast, sources: &mut SourceMap, files: &mut dyn Files, settings
     let items: Vec<&Item> = written().chain(&watcher).collect();
     let mut context = context::Context::new(sources, files, settings);
     context.imports = !diagnostics.is_empty();
-    context.diagnostics = diagnostics;
+    context.findings = diagnostics.into();
     context.model.files = trees.iter().chain([ast]).filter_map(file_of).collect();
     declare::declare(&mut context, &items);
     define::define(&mut context);

@@ -16,10 +16,11 @@ pub(super) fn closest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c s
     if candidates.len() > CANDIDATES_MAX {
         return None;
     }
-    let allowed = (name.chars().count() / 3).max(1);
+    let length = name.chars().count();
+    let allowed = (length / 3).max(1);
     candidates
         .into_iter()
-        .filter(|candidate| *candidate != name)
+        .filter(|candidate| *candidate != name && candidate.chars().count().abs_diff(length) <= allowed)
         .map(|candidate| {
             let alike = Reverse(begin_alike(name, candidate));
             (distance(name, candidate), alike, strsim::osa_distance(name, candidate), candidate)
