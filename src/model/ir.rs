@@ -75,6 +75,8 @@ pub struct Watch {
     /// The type of an agent that nobody sees. The asserts of its root are the conditions of the properties; a transition of its
     /// stops the run.
     pub ty: TypeId,
+    /// Its links that lead to the one agent of a name of `system`, each with the number of the name.
+    pub named: Vec<(usize, usize)>,
     /// The properties in order.
     pub properties: Vec<Property>,
 }

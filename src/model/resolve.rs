@@ -64,7 +64,9 @@ impl<'a> Context<'a> {
             Some(&Global { kind: GlobalKind::Definition(number), .. }) => {
                 self.lower_definition(number, name, span)
             }
-            Some(global) => self.not_a_value(scope.home, global.kind, name, span),
+            Some(&global) => self
+                .lower_single(scope.home, global.kind, name, span)
+                .unwrap_or_else(|| self.not_a_value(scope.home, global.kind, name, span)),
             None => self.unknown_name(scope, name, span),
         }
     }

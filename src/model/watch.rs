@@ -1,13 +1,13 @@
 //! What watches a run: the conditions of properties, and of `stop when`, as those of an agent that nobody sees.
 //!
-//! Such a condition is a condition of an agent that has no variables: it reads others by quantifiers, and the time. So it is checked
+//! Such a condition is a condition of an agent that has no variables: it reads others by quantifiers and by name, and the time. So it is checked
 //! and compiled like any other, and the agent, [`ir::Watch::ty`](super::ir::Watch), is there from t = 0 on, outside of `system`.
 
-use super::context::{Context, Home, Scope};
+use super::context::{Context, GlobalKind, Home, Scope, Value};
 use super::dimension::Dimension;
 use super::error::{NameError, PropertyError};
-use super::ir::{Formula, Property, TypeId, Watch};
-use super::types::Slot;
+use super::ir::{ExprKind, Formula, Link, Property, TypeId, Watch};
+use super::types::{Slot, Ty};
 use crate::base::Span;
 use crate::syntax::ast::{self, AgentItem, BodyItem, FormulaKind, Item, RunSettingKind};
 
@@ -87,13 +87,44 @@ pub(super) fn fill<'a>(context: &mut Context<'a>, items: &[&'a Item]) {
         let formula = context.formula(&property.formula, &mut n_conditions);
         properties.push(Property { name, formula, span: property.name.span });
     }
-    context.model.watch = Some(Watch { ty, properties });
+    let named = context.named_agents(ty);
+    context.model.watch = Some(Watch { ty, named, properties });
 }
 
 impl<'a> Context<'a> {
     /// Whether a type is that of the agent that nobody sees.
     pub fn is_watcher(&self, ty: TypeId) -> bool {
         self.model.types[ty].name == NAME
+    }
+
+    /// The agent that a name of `system` stands for in the condition of a property: a link of whoever watches leads to it, for as long
+    /// as it lives. None if that is no agent, or there may be several.
+    pub fn lower_single(&mut self, home: Home, kind: GlobalKind, name: &str, span: Span) -> Option<Value> {
+        let Home::Agent(watcher, _) = home else { return None };
+        if !(self.is_watcher(watcher) && matches!(kind, GlobalKind::Instance)) {
+            return None;
+        }
+        let instance = *self.instances.iter().find(|instance| instance.name.text == name)?;
+        if instance.constructor.count.is_some() {
+            return None;
+        }
+        let ty = self.agent_named(&instance.constructor.agent)?;
+        let links = &mut self.model.types[watcher].links;
+        let known = links.iter().position(|link| link.name == name);
+        let link = known.unwrap_or_else(|| {
+            links.push(Link { name: name.to_string(), ty, required: false, cases: Vec::new(), span });
+            links.len() - 1
+        });
+        let itself = self.push(ExprKind::SelfAgent, Ty::Agent(watcher), span);
+        Some(self.push(ExprKind::Link(itself.id, link), Ty::Link(ty), span))
+    }
+
+    /// The links of whoever watches to agents that are named, each with the number of the name in `system`.
+    fn named_agents(&self, watcher: TypeId) -> Vec<(usize, usize)> {
+        let links =
+            self.model.types[watcher].links.iter().enumerate().filter(|(_, link)| link.cases.is_empty());
+        let block = |link: &Link| self.instances.iter().position(|instance| instance.name.text == link.name);
+        links.filter_map(|(number, link)| Some((number, block(link)?))).collect()
     }
 
     /// A formula whose first condition has this number.

@@ -49,6 +49,7 @@ mod survey;
 mod cold;
 mod ahead;
 mod route;
+mod inputs;
 mod population;
 mod present;
 mod exposed;

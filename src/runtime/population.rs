@@ -12,6 +12,7 @@ use smallvec::SmallVec;
 use crate::codegen::program::{Flow, Frame, Layout, ModeSystem, Program, Slot};
 use crate::runtime::ahead::Ahead;
 use crate::runtime::cold::Cold;
+use crate::runtime::inputs::{flow_inputs, is_followed, longest_chain, row_width};
 use crate::runtime::observe::Who;
 use crate::runtime::route::{begin_histories, first};
 use crate::runtime::solve::leads_on;
@@ -166,6 +167,9 @@ impl<'p> Agents<'p> {
             of_type[ty].push(agents.len() - 1);
         }
         let mut linked_from = vec![Vec::new(); agents.len()];
+        for (_, target) in named(program) {
+            linked_from[target].push(agents.len() - 1);
+        }
         for (number, instance) in program.population.agents.iter().enumerate() {
             for target in instance.links.iter().flatten() {
                 linked_from[*target].push(number);
@@ -515,42 +519,14 @@ impl<'p> Agents<'p> {
     }
 }
 
-fn row_width(program: &Program) -> usize {
-    program.types.iter().map(|ty| ty.layout.n_aux().max(ty.layout.n_states)).max().unwrap_or(0)
-}
-
-/// The auxiliary columns that each flow depends on. Locks are not among those of its kinks: events do not write them.
-fn flow_inputs(program: &Program) -> Vec<Vec<Vec<(usize, usize)>>> {
-    let of_flow = |flow: &Flow| {
-        let mut columns = program.kernel(flow.rates).reads().columns.clone();
-        for kink in &flow.kinks {
-            columns.extend_from_slice(&program.kernel(kink.initial).reads().columns);
-        }
-        columns.sort_unstable();
-        columns.dedup();
-        columns
-    };
-    let of_mode = |mode: &ModeSystem| mode.flow.as_ref().map_or_else(Vec::new, of_flow);
-    program.types.iter().map(|ty| ty.modes.iter().map(of_mode).collect()).collect()
-}
-
-/// For each type, whether any flow reads states of another agent of it.
-fn is_followed(program: &Program) -> Vec<bool> {
-    let mut is_followed = vec![false; program.types.len()];
-    for mode in program.types.iter().flat_map(|ty| &ty.modes) {
-        for flow in mode.flow.iter() {
-            flow.couples.iter().for_each(|&slot| is_followed[flow.frame.slots[slot].ty()] = true);
-        }
-    }
-    is_followed
-}
-
 /// The agent that watches, and has nothing.
 fn watcher(program: &Program, ty: usize, place: usize) -> Agent {
     let system = &program.types[ty];
     let mode = first(system, 0);
     let mut aux = vec![0.0; system.layout.n_aux()];
     (aux[Layout::NUMBER], aux[Layout::MODE]) = (place as f64, mode as f64);
+    (0..system.layout.n_links).for_each(|link| aux[system.layout.link(link)] = -1.0);
+    named(program).for_each(|(link, target)| aux[system.layout.link(link)] = target as f64);
     Agent {
         number: Who::HIDDEN,
         ty,
@@ -567,27 +543,8 @@ fn watcher(program: &Program, ty: usize, place: usize) -> Agent {
     }
 }
 
-/// The longest chain of links in any frame of the program.
-fn longest_chain(program: &Program) -> usize {
-    let mut longest = 0;
-    let mut visit = |frame: &Frame| {
-        let mut depths = vec![0; frame.slots.len()];
-        for (k, slot) in frame.slots.iter().enumerate() {
-            if let Slot::Link { from, .. } = slot {
-                depths[k] = depths[*from] + 1;
-                longest = longest.max(depths[k]);
-            }
-        }
-    };
-    for ty in &program.types {
-        for mode in &ty.modes {
-            mode.flow.iter().for_each(|flow| visit(&flow.frame));
-            mode.claims.iter().for_each(|claim| visit(&claim.frame));
-        }
-        ty.transitions.iter().for_each(|transition| visit(&transition.frame));
-        ty.links.iter().flat_map(|link| &link.updates).for_each(|update| visit(&update.frame));
-    }
-    let pairs = program.interactions.iter().flat_map(|interaction| &interaction.transitions);
-    pairs.for_each(|pair| visit(&pair.transition.frame));
-    longest
+/// The links of whoever watches to agents that are named, and these.
+fn named(program: &Program) -> impl Iterator<Item = (usize, usize)> + '_ {
+    let named = program.watch.iter().flat_map(|watch| &watch.named);
+    named.map(|&(link, block)| (link, program.population.blocks[block].first))
 }

@@ -398,3 +398,53 @@ fn what_is_no_property_is_refused() {
     assert!(with("run { stop when 3 }").contains("HY0222"));
     assert!(with("property p = always rising(time > 2)").contains("HY0246"));
 }
+
+#[test]
+fn agents_of_the_system_may_be_named() {
+    let run = run("agent Plant(v0: real) {
+           state v = v0
+           initial mode Fast { flow { v' = 1 - v }  late: when v >= 0.9 -> Slow }
+           mode Slow { flow { v' = 0 } }
+         }
+         agent Gone { state y = 1  flow { y' = -1 }  die: when y <= 0 { destroy self } }
+         system { plant = Plant(v0 = 0)  helper = Plant(v0 = 0.5)  gone = Gone()  more = Plant[3](v0 = 0.2*index) }
+         property below = always plant.v < 1
+         property apart = always abs(plant.v - helper.v) <= 0.4
+         property among = always [1, 2] forall m in more: m == plant or m.v >= plant.v - 0.5
+         property slows = eventually plant is Slow
+         property early = always [0, 0.5] gone.y > 0
+         property later = always gone.y >= -1
+         property ended = eventually [2, 2.2] not gone
+         run { until 5  tolerance 1e-10  stop when plant is Slow and helper.v >= 0.9 }");
+    let end = 10.0_f64.ln();
+    check(&run, "below", true, 0.1, end, "");
+    check(&run, "apart", false, -0.1, 0.0, "");
+    check(&run, "early", true, 0.5, 0.5, "");
+    assert!(verdict(&run, "among").holds && verdict(&run, "slows").holds && verdict(&run, "ended").holds);
+    let later = verdict(&run, "later");
+    assert!(!later.holds, "who is no more is compared with nothing");
+    near(later.time.unwrap(), 1.0, 1e-9);
+    near(run.time, end, 1e-9);
+    assert!(matches!(run.end, Ended::Stop { .. }), "{:?}", run.end);
+}
+
+#[test]
+fn a_name_of_several_agents_is_a_set_and_no_agent() {
+    let text = |condition: &str| {
+        format!(
+            "agent A {{ state x = 0  flow {{ x' = 1 }} }}
+             system {{ one = A()  many = A[2]() }}
+             property p = always {condition}
+             run {{ until 1 }}"
+        )
+    };
+    assert!(refused(&text("many.x < 5")).contains("forall o in many"));
+    assert!(refused(&text("one < 5")).contains("HY02"), "an agent is no number");
+    assert!(refused(&text("one.z < 5")).contains("`z`"));
+    for condition in
+        ["forall o in many: o.x < one.x + 5", "exists one in many: one.x < 5", "one.x < 5 and one.x > -5"]
+    {
+        let run = run(&text(condition));
+        assert!(verdict(&run, "p").holds, "{condition}");
+    }
+}
