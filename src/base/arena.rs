@@ -1,6 +1,6 @@
 //! Arenas with typed indices: storage in which an index of one arena cannot be used on another.
 //!
-//! An arena grows by chunks: what is there is never copied, and no more than a chunk lies idle.
+//! A large arena grows by chunks: what is in a full one is never copied, and no more than a chunk lies idle.
 
 use std::fmt;
 use std::hash::{Hash, Hasher};
@@ -141,15 +141,21 @@ impl<T> Index<Idx<T>> for Arena<T> {
     type Output = T;
     fn index(&self, idx: Idx<T>) -> &T {
         let (chunk, place) = (idx.index() / CHUNK, idx.index() % CHUNK);
-        self.full.get(chunk).map_or_else(|| &self.last[place], |chunk| &chunk[place])
+        if chunk < self.full.len() {
+            &self.full[chunk][place]
+        } else {
+            &self.last[idx.index() - self.full.len() * CHUNK]
+        }
     }
 }
 impl<T> IndexMut<Idx<T>> for Arena<T> {
     fn index_mut(&mut self, idx: Idx<T>) -> &mut T {
         let (chunk, place) = (idx.index() / CHUNK, idx.index() % CHUNK);
-        match self.full.get_mut(chunk) {
-            Some(chunk) => &mut chunk[place],
-            None => &mut self.last[place],
+        let n_full = self.full.len();
+        if chunk < n_full {
+            &mut self.full[chunk][place]
+        } else {
+            &mut self.last[idx.index() - n_full * CHUNK]
         }
     }
 }

@@ -50,6 +50,11 @@ impl ActionList {
         destroys(&self.steps)
     }
 
+    /// Whether it may end the run.
+    pub fn stops(&self) -> bool {
+        stops(&self.steps)
+    }
+
     /// All that makes agents.
     pub fn births(&self) -> Vec<&Birth> {
         let mut found = Vec::new();
@@ -67,6 +72,19 @@ fn destroys(steps: &[ActionStep]) -> bool {
         | ActionStep::Emit { .. }
         | ActionStep::Goto { .. }
         | ActionStep::Stop { .. }
+        | ActionStep::Create(_) => false,
+    })
+}
+
+fn stops(steps: &[ActionStep]) -> bool {
+    steps.iter().any(|step| match step {
+        ActionStep::Stop { .. } => true,
+        ActionStep::If { then, otherwise, .. } => stops(then) || stops(otherwise),
+        ActionStep::Assign { .. }
+        | ActionStep::Draw { .. }
+        | ActionStep::Emit { .. }
+        | ActionStep::Goto { .. }
+        | ActionStep::Destroy { .. }
         | ActionStep::Create(_) => false,
     })
 }

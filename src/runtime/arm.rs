@@ -17,6 +17,7 @@ use crate::runtime::sleep::Regard;
 use crate::runtime::solve::roots::{AT_TURN, Direction, direction};
 use crate::runtime::solve::{scheduled, time_resolution};
 use crate::runtime::truth::{self, Side, Truths};
+use crate::runtime::zeros::Zero;
 
 /// How an atom that lies on its boundary is settled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -148,8 +149,22 @@ impl<'p> Engine<'p, '_> {
             && folds.is_empty()
             && !self.leads_elsewhere(index, written)
             && self.value_before(kernel, &slots, written) == Some(g);
-        // A zero that is written anew from what was zero in this instant is known no better.
-        let is_there = before.slack > 0.0 && before.certified >= time;
+        let zero = self.guards.zeros.get(index, time);
+        let anew = folds.is_empty()
+            && match rule {
+                Rule::Fresh => false,
+                Rule::Woken => !unchanged,
+                Rule::Rates => self.value_before(kernel, &slots, written).is_some_and(|old| old != g),
+            };
+        // A zero that is written from what was zero in this instant is known no better than that was.
+        let known = match (anew, rule) {
+            (true, _) => zero.map_or(0.0, |zero| zero.width),
+            (false, Rule::Fresh | Rule::Woken) if !unchanged => 0.0,
+            (false, _) => before.slack,
+        };
+        if anew {
+            self.guards.atoms[index].slack = if g.abs() <= known { known } else { 0.0 };
+        }
         let mut has_side = true;
         let truth = if g.is_nan() || absent && !g.is_finite() {
             has_side = false;
@@ -175,11 +190,11 @@ impl<'p> Engine<'p, '_> {
             // Where g can jump in a way that is not known, a bound of its rounding may be the height of the jump: then its sign
             // is taken as it is.
             let rounding = if atom.smooth { self.rounding(kernel, &slots, &folds) } else { 0.0 };
-            let clear = g.abs() > if unchanged || is_there { before.slack.max(rounding) } else { rounding };
+            let clear = g.abs() > known.max(rounding);
             let along = if unchanged { before.truth } else { closed(atom.relation, before.truth) };
             let is_hazard = rule == Rule::Rates && self.is_hazard(before.instance);
             let mut decide = || {
-                let decided = self.decide(index, (g, rounding), &slots, &folds);
+                let decided = self.decide(index, (g, rounding, known), &slots, &folds);
                 has_side = decided.is_some();
                 decided.unwrap_or(along)
             };
@@ -189,7 +204,7 @@ impl<'p> Engine<'p, '_> {
                 Rule::Rates => decide(),
                 Rule::Woken if unchanged && clear => before.truth,
                 Rule::Fresh | Rule::Woken if clear => g < 0.0,
-                Rule::Woken if unchanged || is_there && before.by_rates => decide(),
+                Rule::Woken if unchanged || zero.is_some_and(|zero| zero.by_rates) => decide(),
                 Rule::Fresh | Rule::Woken if atom.relation == Relation::Crossing => decide(),
                 Rule::Fresh | Rule::Woken if atom.relation == Relation::Negative && atom.smooth => {
                     // The infimum of the times at which it is true is this one (rule 3), though it is not true at it.
@@ -210,13 +225,15 @@ impl<'p> Engine<'p, '_> {
         state.truth = truth;
         state.sideless = before.sideless && !has_side;
         state.touched = touched;
-        if !unchanged && g.abs() > state.slack {
-            state.slack = 0.0;
-        }
-        state.by_rates = state.slack > 0.0 && (rule == Rule::Rates || is_there && before.by_rates);
+        let by_rates = rule == Rule::Rates || zero.is_some_and(|zero| zero.by_rates);
+        let width = zero.map_or_else(|| Zero::width_of(state.slack, time), |zero| zero.width);
+        let zero = (state.slack > 0.0).then_some(Zero { width, by_rates });
         state.rooted = enters || rule == Rule::Woken && before.rooted && unchanged;
         if state.touched || state.rooted {
             self.guards.roused.push(index as u32);
+        }
+        if rule != Rule::Fresh {
+            self.guards.zeros.set(index, time, zero);
         }
         let kept = unchanged && before.rooted;
         self.recertify(index, if kept { before.certified.max(time) } else { time });
@@ -312,7 +329,7 @@ impl<'p> Engine<'p, '_> {
     fn decide(
         &mut self,
         index: usize,
-        (g, rounding): (f64, f64),
+        (g, rounding, known): (f64, f64, f64),
         slots: &Slots,
         folds: &[Folded<'_>],
     ) -> Option<bool> {
@@ -322,9 +339,10 @@ impl<'p> Engine<'p, '_> {
         let state = &mut self.guards.atoms[index];
         // Beside a pole the rate says nothing of how near zero is.
         let by_rate =
-            state.slack.max(jet[1].abs() * time_resolution(self.present.time)).min(1e-3 * (1.0 + g.abs()));
+            known.max(jet[1].abs() * time_resolution(self.present.time)).min(1e-3 * (1.0 + g.abs()));
         let band = by_rate.max(rounding);
         if g.abs() > band || !jet[1].is_finite() {
+            state.slack = if g.abs() > band { 0.0 } else { state.slack };
             return Some(g < 0.0);
         }
         state.slack = band;

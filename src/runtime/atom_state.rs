@@ -34,8 +34,6 @@ pub struct AtomState {
     pub near: f64,
     /// See `Known::slack`.
     pub slack: f64,
-    /// Whether its rates decide while it stays on the boundary on which it is: it has fired there, or has been armed there (rule 3).
-    pub by_rates: bool,
     /// See `Known::settled`.
     pub settled: bool,
     /// Since when it is certified by rates that are bounded whatever the states of its agents are, s: an event before would
@@ -88,7 +86,6 @@ impl AtomState {
             grazed: f64::NEG_INFINITY,
             leap: None,
             slack: 0.0,
-            by_rates: false,
             settled: false,
             far: f64::INFINITY,
             stride: 0.0,

@@ -13,6 +13,7 @@ use crate::runtime::present::Depth;
 use crate::runtime::solve::roots::Curve;
 use crate::runtime::solve::time_resolution;
 use crate::runtime::truth::Side;
+use crate::runtime::zeros::Zero;
 
 impl Engine<'_, '_> {
     /// The width of an instant at a time, s: roots of those who share an agent that lie within it of the first are in it (rule 4).
@@ -264,11 +265,13 @@ impl Engine<'_, '_> {
         };
         state.truth = state.leap.map_or(!state.truth, |leap| leap.after);
         state.sideless = false;
-        (state.rooted, state.by_rates) = (true, false);
+        state.rooted = true;
         self.guards.roused.push(index as u32);
         let state = &mut self.guards.atoms[index];
         // Across a jump the rate says nothing of how near zero g is.
+        let zero = if state.leap.is_some() { None } else { Zero::of_root(jet[1], time) };
         let slack = if state.leap.is_some() { 0.0 } else { jet[1].abs() * self.event_tolerance(time) };
+        self.guards.zeros.set(index, time, zero);
         self.recertify(index, root.max(time));
         let state = &mut self.guards.atoms[index];
         state.slack = if slack.is_finite() { slack } else { 0.0 };

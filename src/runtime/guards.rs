@@ -13,6 +13,7 @@ use crate::runtime::definition::{AtomShape, Definition, definitions};
 pub use crate::runtime::definition::{Listing, Origin};
 use crate::runtime::noticed::Noticed;
 use crate::runtime::population::{ABSENT, Agents, Slots};
+use crate::runtime::zeros::Zeros;
 
 /// Numbers of atom instances.
 pub type AtomNumbers = std::iter::Flatten<smallvec::IntoIter<[std::ops::Range<usize>; 1]>>;
@@ -58,6 +59,8 @@ pub struct Guards<'p> {
     pub atoms: Vec<AtomState>,
     /// The atoms that may be `touched` or `rooted`, some more than once.
     pub roused: Vec<u32>,
+    /// What is on its boundary at the instant at hand.
+    pub zeros: Zeros,
     /// What is read of agents besides states and modes.
     pub noticed: Noticed,
     /// `rising`: whether its condition has been false since arming.
@@ -102,6 +105,7 @@ impl<'p> Guards<'p> {
             atoms: Vec::new(),
             rising: Vec::new(),
             roused: Vec::new(),
+            zeros: Zeros::default(),
             noticed: Noticed::new(agents, &definitions),
             of_agent: vec![Vec::new(); agents.len()],
             hearing: vec![Vec::new(); agents.len()],

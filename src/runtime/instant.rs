@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::base::Span;
-use crate::codegen::program::{ClaimKind, ClaimSystem, Trigger};
+use crate::codegen::program::{ClaimKind, ClaimSystem, Relation, Trigger};
 use crate::codegen::trace::Compared;
 use crate::runtime::act::{Claimed, Effect, Written, claims};
 use crate::runtime::arm::Rule;
@@ -57,6 +57,7 @@ impl Engine<'_, '_> {
         let mut touched_agents: BTreeSet<(usize, usize)> = BTreeSet::new();
         let mut concerned: Vec<u32> = candidates.iter().map(|candidate| candidate.instance).collect();
         let mut generations = 0;
+        let mut restarted: FxHashSet<usize> = FxHashSet::default();
         // The loop ends an interrupted run; until then an instant without an end must not go on.
         while !self.interrupted() {
             self.deliver();
@@ -85,6 +86,7 @@ impl Engine<'_, '_> {
             if self.notes.is_some() {
                 self.explain_writes(&written, &fired);
             }
+            restarted.extend(&written.restarted);
             let entered = self.change_modes(&written);
             let mut woken = self.wake(&written)?;
             for &instance in &fired {
@@ -111,6 +113,7 @@ impl Engine<'_, '_> {
         }
         concerned.sort_unstable();
         concerned.dedup();
+        self.turn_back(&concerned, &restarted);
         self.judge_claims(&concerned, &[])?;
         self.set_gates(&concerned)?;
         self.calm(&concerned);
@@ -339,7 +342,7 @@ impl Engine<'_, '_> {
             state.touched = false;
             state.rooted = false;
             if was_rooted || self.reads_written(index, written) {
-                self.settle(index, Rule::Rates, &Written::default());
+                self.settle(index, Rule::Rates, written);
             }
         }
         if !self.guards.definition(instance).folds.is_empty() {
@@ -358,6 +361,21 @@ impl Engine<'_, '_> {
         };
         let spent: Vec<u32> = self.guards.roused.iter().copied().filter(is_spent).collect();
         spent.into_iter().for_each(|index| self.guards.atoms[index as usize].touched = false);
+    }
+
+    /// What changed at a root, and has neither fired nor been written, goes on along the new flow: where that turns back, it does not
+    /// change after all (rule 2: what is false at a single point has not been false).
+    fn turn_back(&mut self, concerned: &[u32], restarted: &FxHashSet<usize>) {
+        for index in self.guards.roused.clone() {
+            let index = index as usize;
+            let (atom, slots) = self.guards.atom_slots(&self.agents, index);
+            let AtomState { instance, rooted, leap, .. } = self.guards.atoms[index];
+            let is_root = rooted && leap.is_none() && atom.relation != Relation::Crossing;
+            let reads_anew = atom.slots.iter().any(|&slot| restarted.contains(&slots[slot]));
+            if is_root && reads_anew && concerned.binary_search(&instance).is_ok() {
+                self.settle(index, Rule::Rates, &Written::default());
+            }
+        }
     }
 
     /// Ends the instant for some instances, rising: what was true only at it is so no more.

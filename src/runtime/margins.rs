@@ -125,11 +125,22 @@ impl<'p> Margins<'_, 'p> {
 
     /// How far from zero a margin may be and still count as zero: by rounding, and by the width to which times are known.
     fn slack(&mut self, spot: &Spot, when: When) -> f64 {
-        let (Some(atom), When::Along(t)) = (spot.atom, when) else { return 0.0 };
+        let When::Along(t) = when else { return 0.0 };
+        if spot.atom.is_none() { 0.0 } else { self.rounding(spot, t) + spot.slope.abs() * time_resolution(t) }
+    }
+
+    /// The rounding of a margin at a time.
+    fn rounding(&mut self, spot: &Spot, t: f64) -> f64 {
+        let Some(atom) = spot.atom else { return 0.0 };
         let atom = &self.guard.atoms[atom];
         let rounding = self.curve(atom, &spot.slots, |curve| curve.jet_range(t, t)[0].width());
-        let rounding = if rounding.is_finite() { rounding } else { 0.0 };
-        rounding + spot.slope.abs() * time_resolution(t)
+        if rounding.is_finite() { rounding } else { 0.0 }
+    }
+
+    /// The rounding of the margin at a time, of whoever decides it there.
+    pub fn rounding_at(&mut self, t: f64) -> f64 {
+        let spot = self.at(When::Along(t));
+        self.rounding(&spot, t)
     }
 
     /// The margin of a spot, with its slack.

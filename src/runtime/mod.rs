@@ -58,6 +58,7 @@ mod fold;
 mod definition;
 mod noticed;
 mod candidates;
+mod zeros;
 mod atom_state;
 mod guards;
 mod truth;

@@ -4,6 +4,8 @@
 //! for its own jumps. Its extremes are found by branch and bound: pieces that cannot hold a better value are left out, pieces on
 //! which the rate keeps its sign have it at an end. So nothing is sampled, and nothing of the run is changed.
 
+use std::collections::VecDeque;
+
 use crate::codegen::program::ClaimSystem;
 use crate::runtime::engine::Engine;
 use crate::runtime::lookout::Lookout;
@@ -13,8 +15,15 @@ use crate::runtime::signal::{ACCURACY, Origin, Piece};
 use crate::runtime::solve::time_resolution;
 use crate::runtime::verdicts::{Decider, Found, Trace, Watched};
 
-/// After so many pieces of one stretch the best value so far is taken.
-const PIECES_MAX: usize = 100_000;
+/// After so many pieces of one stretch the best value so far is taken: none of those left is longer than this part of it. What stays the
+/// same (the distance of two in step) has no extreme, and bounds may take very small pieces to tell.
+const PIECES_MAX: usize = 4096;
+
+/// The same for `until`, which goes from left to right.
+const UNTIL_PIECES_MAX: usize = 100_000;
+
+/// How much wider than at a point, by rounding alone, a bound may be: it is a sum of as many terms.
+const ROUNDINGS: f64 = 32.0;
 
 /// A trace goes on for so long behind its last window: a window may be a point of time, a stretch of a signal is not. s.
 const BEYOND: f64 = 1e-6;
@@ -176,7 +185,7 @@ impl<'p> Engine<'p, '_> {
                 if top.as_ref().is_some_and(|top| top.margin.exceeds(best)) {
                     *found = top;
                 }
-            } else if y - x > time_resolution(y) && looked_at < PIECES_MAX {
+            } else if y - x > time_resolution(y) && looked_at < UNTIL_PIECES_MAX {
                 let middle = 0.5 * (x + y);
                 pieces.extend([(middle, y), (x, middle)]);
                 continue;
@@ -313,12 +322,17 @@ fn search(margins: &mut Margins<'_, '_>, extreme: Extreme, (s, e): (f64, f64), f
     };
     look(margins, s);
     let mut best = look(margins, e);
-    let mut pieces = vec![(s, e)];
+    let noise = margins.rounding_at(0.5 * (s + e)) * ROUNDINGS;
+    let mut pieces = VecDeque::from([(s, e)]);
     let mut looked_at = 0;
-    while let Some((a, b)) = pieces.pop() {
+    // Longer pieces first.
+    while let Some((a, b)) = pieces.pop_front() {
         looked_at += 1;
         let bound = margins.over(a, b);
-        let may_improve = may_improve(extreme, end_of(&bound, extreme), &bound.sides, best);
+        let end = end_of(&bound, extreme);
+        let sign = extreme.sign();
+        let may_improve = improves(sign * end.value + noise, sign * best.value)
+            || may_change_side(extreme, end, &bound.sides, best);
         let monotone = bound.slope.lo >= 0.0 || bound.slope.hi <= 0.0;
         if !may_improve || monotone || b - a <= time_resolution(b) {
             continue;
@@ -328,7 +342,7 @@ fn search(margins: &mut Margins<'_, '_>, extreme: Extreme, (s, e): (f64, f64), f
         }
         let middle = 0.5 * (a + b);
         best = look(margins, middle);
-        pieces.extend([(middle, b), (a, middle)]);
+        pieces.extend([(a, middle), (middle, b)]);
     }
     if let Some(time) = time {
         let settled = settle(margins, extreme.sign(), time, (s, e));

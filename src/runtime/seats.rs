@@ -89,6 +89,7 @@ impl Guards<'_> {
         }
         self.roused.iter_mut().for_each(|index| *index = moved[*index as usize]);
         self.roused.retain(|&index| index != u32::MAX);
+        self.zeros.forget();
         queues.renumber_atoms(&moved);
     }
 }

@@ -591,7 +591,8 @@ fn zeno_behaviour_is_told_where_runs_meet_it() {
     let met_by_a_run = [
         "state x = 1, v = 0  flow { x' = v  v' = -9.81 }  bounce: when x <= 0 { v := -0.5*v }".to_string(),
         "state x = 1, v = 0  flow { x' = v  v' = -9.81 }  bounce: when x <= 0 { v := -p*v }".to_string(),
-        "state x = 0, v = 1  flow { x' = v  v' = 3 - v }  bounce: when 1 <= x and v > 0 { v := -0.3*v  x := 1 }".to_string(),
+        "state x = 0, v = 1  flow { x' = v  v' = 3 }  bounce: when 1 <= x and v > 0 { v := -0.3*v  x := 1 }"
+            .to_string(),
         "discrete d: real = 2  initial mode M { again: after d/2 -> M { d := p*d } }".to_string(),
         tanks(1.5),
     ];
@@ -618,4 +619,55 @@ fn zeno_behaviour_is_told_where_runs_meet_it() {
         assert!(!told.contains(&"HY0627"), "{parts}: {told:?}");
         assert_eq!(met, None, "{parts}");
     }
+}
+
+/// Checks that runs of these models end well, and that neither of the two warnings is given.
+#[track_caller]
+fn are_fine(texts: &[&str]) {
+    for text in texts {
+        let end = Case::new(text).run_any().end;
+        assert!(!matches!(end, Ended::Error(_)), "{text}: {end:?}");
+        let told: Vec<_> =
+            codes(text).into_iter().filter(|code| ["HY0626", "HY0627"].contains(code)).collect();
+        assert_eq!(told, [""; 0], "{text}");
+    }
+}
+
+#[test]
+fn invariants_that_something_saves_at_the_last_instant_are_not_told() {
+    are_fine(&[
+        // what is due, what an entry, an exit or an `if` may write, what a write makes rise or cross, what is on its boundary and
+        // moves in, whom others destroy, where a reset may have led, who is born otherwise
+        "agent A { state x = 0 discrete n: int = 0 invariant x <= 1 flow { x' = 1 } full: when x >= 1 { n := n + 1 } tick: every 1 { x := 0 } } system { a = A() } run { until 5.5 }",
+        "agent A { state x = 0 discrete n: int = 0 initial mode M { invariant x <= 1 flow { x' = 1 } full: when x >= 1 { n := 1 } out: after 1 -> N } mode N { flow { x' = -1 } } } system { a = A() } run { until 5 }",
+        "agent A { state x = 0, y = -1 initial mode M { invariant x <= 1 flow { x' = 1 y' = 0 } full: when x >= 1 { y := 1 } out: when crossing(y) -> N } mode N { flow { x' = -1 y' = 0 } } } system { a = A() } run { until 5 }",
+        "agent A { state x = 0, y = -1 initial mode M { invariant x <= 1 flow { x' = 1 y' = 0 } full: when x >= 1 { y := 1 } out: when rising(y > 0) -> N } mode N { flow { x' = -1 y' = 0 } } } system { a = A() } run { until 5 }",
+        "agent A { state x = 0 discrete y: int = 0 initial mode M { invariant x <= 0 entry { y := 1 } flow { x' = 1 } out: when y == 1 -> N } mode N { flow { x' = -1 } } } system { a = A() } run { until 5 }",
+        "agent A { state x = 0, y = 0 initial mode M { flow { x' = 1 y' = 0 } out: when x >= 1 and y <= 0 -> N } mode N { invariant x <= 1 entry { y := 1 } flow { x' = 1 y' = 0 } skip: when y >= 1 -> P } mode P { flow { x' = -1 y' = 0 } } } system { a = A() } run { until 5 }",
+        "agent A(p: real) { state x = 0, y = 0 initial mode M { flow { x' = 1 y' = 0 } out: when x >= 1 and y <= 0 -> N { if p > 0 { y := 1 } } } mode N { invariant x <= 1 flow { x' = 1 y' = 0 } skip: when y >= 1 -> P } mode P { flow { x' = -1 y' = 0 } } } system { a = A(p = 1) } run { until 5 }",
+        "agent Tank { state level = 0 initial mode Filling { flow { level' = 1 } full: when level >= 5 -> Full } mode Full { invariant level <= 5 flow { level' = 1 } } } agent Guard { sell: when exists t in Tank: t.level >= 5 { destroy t } } system { tank = Tank() g = Guard() } run { until 20 }",
+        "agent A(p: real) { state x = 0 initial mode M { flow { x' = 1 } out: when x >= 1 and p < 0 -> N } mode N { invariant x <= 1 flow { x' = p } } } agent S { make: after 1 { create A(p = -1) } } system { a = A(p = 1) s = S() } run { until 5 }",
+        "agent A { state x = 0 discrete d: real = 1 initial mode M { invariant x <= 0 entry { d := 0 } flow { x' = 1 } out: after d -> N } mode N { flow { x' = -1 } } } system { a = A() } run { until 5 }",
+        "agent A { state x = 0 initial mode M { invariant x <= 1 flow { x' = 1 } out: when x >= 1 -> N { x := 1 } } mode N { invariant x <= 1 flow { x' = 1 } skip: when x > 1 -> P } mode P { flow { x' = -1 } } } system { a = A() } run { until 5 }",
+        "agent A { state x = 0 initial mode M { flow { x' = 1 } out: when x >= 1 -> N } mode N { invariant x < 1 flow { x' = -1 } back: when x <= 0.5 -> M } } system { a = A() } run { until 5 }",
+        "agent A { state x = 0, y = 0 initial mode M { flow { x' = 0 y' = 0 } jump: after 1 { x := 5 } out: when crossing(x - 1) -> N { y := x } } mode N { invariant y >= 1 flow { x' = 0 y' = -1 } back: after 2 -> P } mode P { flow { x' = 0 y' = 0 } } } system { a = A() } run { until 10 }",
+    ]);
+}
+
+#[test]
+fn zeno_behaviour_that_something_may_prevent_is_not_told() {
+    are_fine(&[
+        // a start on the floor, ways out on the way, conditions that end, pushes that fade or turn, draws, who ends the run
+        "agent B { state x = 1, v = 0 initial mode F { flow { x' = v v' = -9.81 } bounce: when x <= 0 { v := -0.8*v } rest: when v > 0 and v < 0.1 and x <= 0.001 -> R } mode R { flow { x' = 0 v' = 0 } } } system { b = B() } run { until 10 }",
+        "agent B { state x = 1, v = 0, s = 0 flow { x' = v v' = -9.81 s' = 1 } bounce: when x <= 0 and s <= 1 { v := -0.8*v } } system { b = B() } run { until 10 }",
+        "agent B { state x = 1, v = 10 flow { x' = v v' = -1/(1 + x)^2 } bounce: when x <= 0 { v := -0.5*v } } system { b = B() } run { until 100 }",
+        "agent B { state x = 1, v = 10 initial mode F { flow { x' = v v' = -9.81 } bounce: when x <= 0 { v := -0.8*v } away: when x >= 3 -> R } mode R { flow { x' = 0 v' = 0 } } } system { b = B() } run { until 100 }",
+        "agent B { state x = 1, v = 0 flow { x' = v v' = -9.81 } bounce: when x <= 0 { v := -0.8*v x ~ Uniform(1, 2) } } system { b = B() } run { until 10 }",
+        "agent B { state x = 1, v = 0 flow { x' = v v' = -9.81 } bounce: when x <= 0 and time < 1 { v := -0.8*v } } system { b = B() } run { until 10 }",
+        "agent B { state x = 0, v = 0 flow { x' = v v' = -9.81 } bounce: when x <= 0 { v := -0.8*v } } system { b = B() } run { until 10 }",
+        "agent B { state x = 0, v = 3 flow { x' = v v' = -9.81 } bounce: when x <= 0 { v := -0.8*v } } system { b = B() } run { until 10 }",
+        "agent B { state x = 1, v = 0 flow { x' = v v' = -9.81 } bounce: when x <= 0 { v := -0.8*v } } agent K { done: when time >= 1 { stop } } system { b = B() k = K() } run { until 10 }",
+        "agent B { state x = 1, v = 0 flow { x' = v v' = -9.81 } bounce: when x <= 0 { v := -0.8*v } } agent K { done: when exists b in B: time >= 1 and b.x < 10 { destroy b } } system { b = B() k = K() } run { until 10 }",
+        "agent B { state x = 1, v = 1 flow { x' = v v' = -1 + 0.9*x } bounce: when x <= 0 { v := -0.5*v } } system { b = B() } run { until 12 }",
+    ]);
 }

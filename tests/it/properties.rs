@@ -448,3 +448,25 @@ fn a_name_of_several_agents_is_a_set_and_no_agent() {
         assert!(verdict(&run, "p").holds, "{condition}");
     }
 }
+
+#[test]
+fn a_margin_that_stays_the_same_takes_no_search() {
+    for (margin, most) in [("a.x - b.x + 4", 1_000), ("hypot(a.x - b.x, 1)", 400_000)] {
+        let text = format!(
+            "agent P(x0: real) {{ state x = x0, v = 0  flow {{ x' = v  v' = 1 - v }} }}
+             system {{ a = P(x0 = 0)  b = P(x0 = 3) }}
+             property p = always {margin} >= 0.5
+             run {{ until 20 }}"
+        );
+        let run = run(&text);
+        let expected = if most == 1_000 { 0.5 } else { 10.0_f64.sqrt() - 0.5 };
+        near(verdict(&run, "p").margin, expected, 1e-6);
+        assert!(run.stats.guard_evaluations < most, "{margin}: {}", run.stats.guard_evaluations);
+    }
+    // what is flat first, and then has an extreme
+    let run = run("agent P { state x = 0  flow { x' = if time < 1 then 0 else cos(3*(time - 1)) } }
+         system { p = P() }
+         property least = always p.x >= -1
+         run { until 4 }");
+    near(verdict(&run, "least").margin, 1.0 - 1.0 / 3.0, 1e-6);
+}

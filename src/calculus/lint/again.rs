@@ -11,8 +11,8 @@ use crate::calculus::bounds::Bounds;
 use crate::calculus::form::FormId;
 use crate::calculus::graph::{Node, NodeId};
 use crate::calculus::lint::Warning;
+use crate::calculus::lint::certain::{is_false, restrictions};
 use crate::calculus::lint::effects::{Effect, before, effect, nodes, plain_guard, read_by, reads};
-use crate::calculus::lint::flowing::{is_false, restrictions};
 use crate::calculus::reader::Reader;
 use crate::calculus::system::{
     ActionStep, Condition, Frame, FunctionId, Guard, Relation, System, TransitionSystem,

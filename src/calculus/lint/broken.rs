@@ -12,20 +12,24 @@ use crate::calculus::form::FormId;
 use crate::calculus::graph::Node;
 use crate::calculus::layout::Layout;
 use crate::calculus::lint::Warning;
-use crate::calculus::lint::effects::{effect, guard, nodes, reads};
-use crate::calculus::lint::flowing::{
-    Given, Starts, add_rates, derivatives, entered, is_false, others, restrictions, stand_in,
-};
-use crate::calculus::lint::truth::{Truth, truth};
+use crate::calculus::lint::certain::{holds, is_false, restrictions};
+use crate::calculus::lint::effects::{effect, entered, guard, may_end, nodes, read_by, reads};
+use crate::calculus::lint::flowing::{Given, add_rates, derivatives, others, stand_in};
+use crate::calculus::lint::starts::Starts;
 use crate::calculus::reader::Reader;
 use crate::calculus::system::{
-    ActionStep, AgentSystem, Atom, ClaimKind, ClaimSystem, Condition, Entry, Guard, Instance, Relation,
-    System, Trigger,
+    ActionStep, AgentSystem, Atom, ClaimKind, ClaimSystem, Condition, Entry, FunctionId, Guard, Instance,
+    Relation, System, TransitionSystem, Trigger,
 };
 
 /// Looks at every way into every mode that has an invariant.
 pub fn invariants(system: &System, bounds: &Bounds, starts: &Starts, found: &mut Vec<Warning>) {
-    let of_these = bounds.with_params(system);
+    if may_end(system) {
+        return;
+    }
+    // Who is created may have other parameters.
+    let creates = system.action_lists().any(|list| !list.births().is_empty());
+    let of_these = if creates { bounds.clone() } else { bounds.with_params(system) };
     let is_simple =
         |ty: &AgentSystem| ty.regions.len() == 1 && ty.modes.iter().any(|mode| has_invariant(&mode.claims));
     let simple: Vec<bool> = system.types.iter().map(is_simple).collect();
@@ -65,6 +69,8 @@ struct Arrival<'s> {
     unclear: FxHashSet<Entry>,
     /// The transition that it has just taken without entering its mode anew.
     fired: Option<usize>,
+    /// The mode that it has just entered, with all inside.
+    entered: Option<usize>,
 }
 
 impl<'s> Arrival<'s> {
@@ -73,7 +79,7 @@ impl<'s> Arrival<'s> {
         let flow = mode.flow.as_ref()?;
         let reader = Reader::new(system, bounds, &flow.frame);
         let (given, premises, unclear) = (Given::default(), Vec::new(), FxHashSet::default());
-        Some(Self { system, number, leaf, reader, given, premises, unclear, fired: None })
+        Some(Self { system, number, leaf, reader, given, premises, unclear, fired: None, entered: None })
     }
 
     /// At t = 0.
@@ -94,6 +100,7 @@ impl<'s> Arrival<'s> {
         }
         let entries = ty.modes[leaf].active.iter().flat_map(|&mode| &ty.modes[mode].entry.writes);
         arrival.unclear.extend(entries.map(|(_, target)| *target));
+        arrival.entered = Some(0);
         Some(arrival)
     }
 
@@ -135,6 +142,7 @@ impl<'s> Arrival<'s> {
             _ => None,
         }));
         arrival.fired = transition.target.is_none().then_some(k);
+        arrival.entered = transition.target.map(|target| target.mode.index());
         Some(arrival)
     }
 
@@ -154,17 +162,12 @@ impl<'s> Arrival<'s> {
         let name = if mode.path.is_empty() { ty.name.clone() } else { format!("{}.{}", ty.name, mode.path) };
         let nothing_else = others(self.system, self.number, self.leaf, self.fired)?
             .into_iter()
-            .all(|other| self.waits(other) || is_false(&mut self.reader, &self.given, other));
+            .all(|other| self.waits(other) || self.is_false(other));
         nothing_else.then_some(Warning::Broken { mode: name, claim: broken.span, way })
     }
 
     /// Whether an invariant is false as soon as time goes on.
-    fn breaks(
-        &mut self,
-        claim: &'s ClaimSystem,
-        rates: crate::calculus::system::FunctionId,
-        moving: &Given,
-    ) -> bool {
+    fn breaks(&mut self, claim: &'s ClaimSystem, rates: FunctionId, moving: &Given) -> bool {
         let guard = &claim.violation;
         let mut read = nodes(self.system, guard);
         read.extend(&self.system.functions[rates].outputs);
@@ -174,11 +177,11 @@ impl<'s> Arrival<'s> {
         }
         self.reader.read_as(&claim.frame, self.given.clone(), None);
         let alone = alone(guard, &guard.condition);
-        truth(&mut self.reader, guard, &guard.condition) == Truth::Always
+        holds(&mut self.reader, guard, &guard.condition)
             || alone.into_iter().any(|atom| self.falls(claim, atom, moving))
     }
 
-    /// Whether a comparison is true as soon as time goes on: it is on its boundary or beyond, and goes further.
+    /// Whether a comparison of a violation is true as soon as time goes on: it is on its boundary or beyond, and goes further.
     fn falls(&mut self, claim: &'s ClaimSystem, atom: &Atom, moving: &Given) -> bool {
         let [g, rate, _] = derivatives(&mut self.reader, &claim.frame, atom, moving);
         let is_there = self.reader.forms.interval(g).hi <= 0.0
@@ -196,15 +199,28 @@ impl<'s> Arrival<'s> {
         rest.is_some_and(|rest| forms.interval(rest).hi <= 0.0)
     }
 
-    /// Whether a transition waits for a time that is not this one.
-    fn waits(&mut self, transition: &'s crate::calculus::system::TransitionSystem) -> bool {
+    /// Whether the condition of a transition is certainly false.
+    fn is_false(&mut self, transition: &'s TransitionSystem) -> bool {
+        let ty = &self.system.types[self.number];
+        self.unclear.is_disjoint(&read_by(self.system, ty, &[transition]))
+            && is_false(&mut self.reader, &self.given, transition)
+    }
+
+    /// Whether a transition waits for a time that is not this one: since its mode has just been entered.
+    fn waits(&mut self, transition: &'s TransitionSystem) -> bool {
+        let ty = &self.system.types[self.number];
+        let begins = self.entered.is_some_and(|entered| ty.is_inside(transition.source, entered));
         match &transition.trigger {
             Trigger::After { delay, .. } => {
+                let read = reads(self.system, ty, &self.system.functions[*delay].outputs);
                 self.reader.read_as(&transition.frame, self.given.clone(), None);
                 let delay = self.reader.function(*delay);
-                transition.frame.slots.len() == 1 && self.reader.forms.interval(delay).lo > 0.0
+                let is_later =
+                    transition.frame.slots.len() == 1 && self.reader.forms.interval(delay).lo > 0.0;
+                begins && is_later && self.unclear.is_disjoint(&read)
             }
-            Trigger::Every { .. } | Trigger::Rate { .. } => true,
+            Trigger::Every { .. } => begins,
+            Trigger::Rate { .. } => true,
             Trigger::When(_) | Trigger::On { .. } | Trigger::Chance { .. } => false,
         }
     }

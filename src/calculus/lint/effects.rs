@@ -4,8 +4,8 @@ use rustc_hash::FxHashSet;
 
 use crate::calculus::graph::{Node, NodeId};
 use crate::calculus::system::{
-    ActionList, ActionStep, AgentSystem, Condition, Entry, FunctionId, Guard, System, TransitionSystem,
-    Trigger,
+    ActionList, ActionStep, AgentSystem, Condition, Destination, Entry, FunctionId, Guard, Inside, System,
+    TransitionSystem, Trigger,
 };
 
 /// How many transitions of one mode are compared with each other.
@@ -171,4 +171,21 @@ pub fn comes_before(system: &System, first: &TransitionSystem, second: &Transiti
 pub fn read_by(system: &System, ty: &AgentSystem, transitions: &[&TransitionSystem]) -> FxHashSet<Entry> {
     let guards = transitions.iter().filter_map(|transition| guard(transition));
     guards.flat_map(|guard| reads(system, ty, &nodes(system, guard))).collect()
+}
+
+/// Whether some action may end the run, or remove agents, at any time.
+pub fn may_end(system: &System) -> bool {
+    system.action_lists().any(|list| list.destroys() || list.stops())
+}
+
+/// The configuration that is entered with a mode; none if its history decides.
+pub fn entered(ty: &AgentSystem, transition: &TransitionSystem) -> Option<usize> {
+    let mode = match transition.target {
+        None => return Some(transition.source),
+        Some(Destination { mode, inside: Inside::Initial }) => mode.index(),
+        Some(Destination { mode, inside: Inside::History }) => {
+            return ty.modes[mode.index()].initial.is_none().then_some(mode.index());
+        }
+    };
+    std::iter::successors(Some(mode), |&mode| ty.modes[mode].initial).last()
 }

@@ -9,6 +9,8 @@ mod truth;
 mod effects;
 mod warning;
 mod flowing;
+mod certain;
+mod starts;
 mod never;
 mod hidden;
 mod again;
@@ -33,7 +35,7 @@ pub fn lint(system: &System) -> Vec<Diagnostic> {
     opposite::transitions(system, &bounds, &mut found);
     oneself::conditions(system, &bounds, &mut found);
     pairs::conditions(system, &bounds, &mut found);
-    let starts = flowing::Starts::of(system);
+    let starts = starts::Starts::of(system);
     broken::invariants(system, &bounds, &starts, &mut found);
     zeno::transitions(system, &bounds, &starts, &mut found);
     let mut found: Vec<Diagnostic> = found.into_iter().map(Diagnostic::from).collect();

@@ -25,7 +25,8 @@ pub enum Warning {
     AllAsked { name: String, span: Span, n_pairs: usize },
     /// An invariant of a mode that is false as soon as it is entered by `way`: a transition, or a line of `system`.
     Broken { mode: String, claim: Span, way: Span },
-    /// Of this and the next two: when it is over, s; infinite if that is not known. A transition that takes a part of the speed away from what bounces on its boundary.
+    /// A transition that takes a part of the speed away from what bounces on its boundary; over at a time, s, which is infinite if it
+    /// is not known, as in the next two.
     Rebound { label: String, span: Span, at: f64 },
     /// A transition that makes its own delay shorter each time.
     Hurries { label: String, span: Span, at: f64 },

@@ -3,32 +3,40 @@
 //! Three kinds are known. A rebound: what is compared is driven to its boundary and even at rest pushed beyond it, and the transition
 //! turns its rate back with a part of its size (a ball that bounces). A delay that each firing makes shorter by a factor. Two modes,
 //! each of which lowers one quantity and raises another, and on the whole loses more than it gains (two tanks, one inflow). Not
-//! reported if anything else may happen to the agent, or if the run ends before for everybody who starts there.
+//! reported if anything else may happen to the agent on the way, if an action may end the run or remove agents, or if the run ends
+//! before for everybody who starts there.
 
 use crate::calculus::bounds::{Bounds, REAL};
 use crate::calculus::form::FormId;
 use crate::calculus::graph::Node;
 use crate::calculus::lint::Warning;
-use crate::calculus::lint::effects::{effect, nodes, plain_guard, reads};
-use crate::calculus::lint::flowing::{
-    Given, Starts, add_rates, derivatives, entered, is_false, others, stand_in,
-};
-use crate::calculus::lint::truth::{Truth, truth};
+use crate::calculus::lint::certain::{holds, is_false};
+use crate::calculus::lint::effects::{effect, entered, may_end, nodes, plain_guard, reads};
+use crate::calculus::lint::flowing::{Given, add_rates, derivatives, others, stand_in};
+use crate::calculus::lint::starts::Starts;
 use crate::calculus::reader::Reader;
 use crate::calculus::system::{
     ActionStep, AgentSystem, Atom, Condition, Entry, Flow, Instance, System, TransitionSystem, Trigger,
 };
 use crate::math::Interval;
 
-/// How slow counts as being at rest, in units of the rate.
-const SLOW: f64 = 1e-9;
+/// Between which rates what bounces is nearly at rest.
+const SLOW: [f64; 2] = [1e-12, 1e-9];
+
+/// What is lost must be more than what is gained by this share.
+const SHARE: f64 = 1e-9;
 
 /// When infinitely many firings are over, s; infinite if that cannot be told.
 type Limit = f64;
 
 /// Looks at every transition.
 pub fn transitions(system: &System, bounds: &Bounds, starts: &Starts, found: &mut Vec<Warning>) {
-    let of_these = bounds.with_params(system);
+    if may_end(system) {
+        return;
+    }
+    // Who is created may have other parameters.
+    let creates = system.action_lists().any(|list| !list.births().is_empty());
+    let of_these = if creates { bounds.clone() } else { bounds.with_params(system) };
     let until = system.run.until.unwrap_or(f64::INFINITY);
     for (number, ty) in system.types.iter().enumerate().filter(|(_, ty)| ty.regions.len() == 1) {
         for (k, transition) in ty.transitions.iter().enumerate() {
@@ -136,15 +144,18 @@ impl<'s> Agent<'s> {
     fn rebounds(self, k: usize) -> Option<Limit> {
         let transition = &self.ty().transitions[k];
         let guard = plain_guard(transition).filter(|_| transition.frame.slots.len() == 1)?;
-        guard.condition.conjuncts().iter().find_map(|term| match term {
+        let terms = guard.condition.conjuncts();
+        terms.iter().enumerate().find_map(|(number, term)| match term {
             Condition::Atom(surface) if guard.atoms[*surface].smooth => {
-                self.rebounds_from(k, &guard.atoms[*surface])
+                let rest = terms.iter().enumerate().filter(|(other, _)| *other != number);
+                self.rebounds_from(k, &guard.atoms[*surface], rest.map(|(_, term)| term).collect())
             }
             _ => None,
         })
     }
 
-    fn rebounds_from(self, k: usize, atom: &'s Atom) -> Option<Limit> {
+    /// The same, from where this comparison is on its boundary, if the rest of the condition is true there.
+    fn rebounds_from(self, k: usize, atom: &'s Atom, rest: Vec<&'s Condition>) -> Option<Limit> {
         let ty = self.ty();
         let transition = &ty.transitions[k];
         let (guard, flow) = (plain_guard(transition)?, ty.modes[transition.source].flow.as_ref()?);
@@ -162,22 +173,28 @@ impl<'s> Agent<'s> {
             Some(value) => value == (x, 0.0, boundary),
         };
         (0.0 < part && part < 1.0 && stays && self.keeps(transition, flow, [x, v])).then_some(())?;
-        // At rest on the boundary.
-        let mut resting = given;
-        let slow = if of_speed > 0.0 { Interval::new(-SLOW, 0.0) } else { Interval::new(0.0, SLOW) };
-        resting.insert(x, reader.forms.constant(boundary));
-        resting.insert(v, reader.forms.leaf(Node::State { slot: u32::MAX, column: 0 }, slow));
-        let mut pushed = resting.clone();
+        // Wherever it is on its side.
+        let mut flying = given.clone();
+        let beyond =
+            if factor > 0.0 { Interval::new(boundary, REAL.hi) } else { Interval::new(REAL.lo, boundary) };
+        flying.insert(x, reader.forms.leaf(Node::State { slot: u32::MAX, column: 0 }, beyond));
+        let mut pushed = flying.clone();
         add_rates(&mut reader, flow, &mut pushed).then_some(())?;
         let [_, _, push] = derivatives(&mut reader, &transition.frame, atom, &pushed);
-        let push = reader.forms.interval(push);
-        reader.read_as(&transition.frame, resting.clone(), None);
-        let may_fire = truth(&mut reader, guard, &guard.condition) != Truth::Never;
-        let pushes = REAL.lo < push.lo && push.hi < 0.0;
-        (pushes && may_fire && self.is_alone(&mut reader, &resting, k)).then_some(())?;
-        // As if it were pushed so all the way: down, and then up and down again with a part of the speed.
-        let (start, rate, push) = (self.at_start(place), self.at_start(speed), -push.hi);
+        let push = -reader.forms.interval(push).hi;
+        (push > 0.0 && self.is_alone(&mut reader, &flying, k)).then_some(())?;
+        // Nearly at rest on the boundary, coming down.
+        let mut resting = given;
+        let [least, most] = SLOW;
+        let slow = if of_speed > 0.0 { Interval::new(-most, -least) } else { Interval::new(least, most) };
+        resting.insert(x, reader.forms.constant(boundary));
+        resting.insert(v, reader.forms.leaf(Node::State { slot: u32::MAX, column: 1 }, slow));
+        reader.read_as(&transition.frame, resting, None);
+        rest.into_iter().all(|term| holds(&mut reader, guard, term)).then_some(())?;
+        // Down, and then up and down again with a part of the speed; pushed more it is sooner.
+        let (start, rate) = (self.at_start(place), self.at_start(speed));
         let impact = (rate * rate + 2.0 * push * start).sqrt();
+        (start > 0.0 || start.is_nan()).then_some(())?;
         Some(or_unknown((rate + impact + 2.0 * impact * part / (1.0 - part)) / push))
     }
 
@@ -189,8 +206,16 @@ impl<'s> Agent<'s> {
         let read = reads(self.system, ty, &roots);
         let effect = effect(ty, transition);
         let is_own = |entry: &Entry| but.contains(&entry.leaf(0));
+        let draws = transition
+            .actions
+            .steps
+            .iter()
+            .any(|step| matches!(step, ActionStep::Draw { target, .. } if read.contains(target)));
         let mut others = effect.writes.iter().filter(|entry| !is_own(entry));
-        !effect.stops && effect.unclear.is_disjoint(&read) && others.all(|entry| !read.contains(entry))
+        !effect.stops
+            && !draws
+            && effect.unclear.is_disjoint(&read)
+            && others.all(|entry| !read.contains(entry))
     }
 
     /// What the actions of a transition leave of a column: its new value as a part of its old one.
@@ -277,7 +302,7 @@ impl<'s> Agent<'s> {
         let [[a_in_a, b_in_a], [a_in_b, b_in_b]] = rates;
         // With some weight w on b the sum falls in both modes: a' + w b' < 0.
         let lost = a_in_a.hi * b_in_b.hi - a_in_b.hi * b_in_a.hi;
-        (lost > SLOW * a_in_b.hi * b_in_a.hi).then_some(())?;
+        (lost > SHARE * a_in_b.hi * b_in_a.hi).then_some(())?;
         // The times in the two modes after which both are zero.
         let [a, b] = first;
         let times = [b * a_in_b.hi - a * b_in_b.hi, a * b_in_a.hi - b * a_in_a.hi];

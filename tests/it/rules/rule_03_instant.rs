@@ -428,3 +428,72 @@ fn rule_03_held_it_fires_at_zero_once_the_rate_points_in() {
                  turn: when n == 1 and x < 0 { x := 1 }";
     assert_eq!(counts_of_twenty(agent, ["A.cross", "A.turn"]), [40, 20]);
 }
+
+/// The times at which `label` fires, the same by all methods and both forms.
+#[track_caller]
+fn times_by_all(text: &str, label: &str) -> Vec<f64> {
+    let of = |integrator| {
+        let run = Case::new(text).integrator(integrator).run();
+        run.times(label)
+    };
+    let [first, others @ ..] = [Integrator::Taylor, Integrator::Tsit5, Integrator::Adams].map(of);
+    others.iter().for_each(|other| all_near(other, &first, 1e-9));
+    first
+}
+
+#[test]
+fn rule_03_what_is_written_beside_zero_is_really_off_it() {
+    // at a root with a large rate, and with a small one afterwards
+    let put = "agent A { state z = -1e6, v = 1e6  discrete n: int = 0
+                 flow { z' = v  v' = 0 }
+                 reach: when z >= 0 { n := n + 1 }
+                 put: when n == 1 { z := -1e-7  v := 1e-3  n := 2 } }
+               system { a = A() }  run { until 3 }";
+    all_near(&times_by_all(put, "A.reach"), &[1.0, 1.0001], 1e-9);
+    // by its own write
+    let own = "agent A { state z = -1e6, v = 1e6  discrete n: int = 0
+                 flow { z' = v  v' = 0 }
+                 reach: when z >= 0 { n := n + 1  z := if n == 0 then -1e-7 else -1e9  v := 1e-3 } }
+               system { a = A() }  run { until 3 }";
+    all_near(&times_by_all(own, "A.reach"), &[1.0, 1.0001], 1e-9);
+    // long after the root, where it has stayed since; whatever the tolerance of events is
+    for settings in ["", "event_tolerance 1e-6"] {
+        let later = format!(
+            "agent A {{ state z = -1000, v = 1000  discrete n: int = 0, go: int = 0
+                 flow {{ z' = v  v' = 0 }}
+                 reach: when z >= 0 {{ v := 0  n := n + 1 }}
+                 alike: when z >= 0 and go == 1 {{ n := n + 1 }}
+                 off: when time >= 2 {{ z := -1e-10  go := 1 }}
+                 put: when time >= 3 {{ z := 0 }} }}
+             system {{ a = A() }}  run {{ until 5  {settings} }}"
+        );
+        all_near(&times_by_all(&later, "A.reach"), &[1.0, 3.0], 1e-9);
+        all_near(&times_by_all(&later, "A.alike"), &[3.0], 1e-9);
+    }
+}
+
+#[test]
+fn rule_03_a_flow_that_turns_at_a_root_leaves_what_was_true_true() {
+    // z falls to zero and rises again: z >= 0 is never false, z > 0 at a single point only
+    for (condition, actions) in
+        [("z >= 0", ""), ("z > 0", ""), ("z >= 0", "z := 0"), ("z >= 0", "z := 0.5*z")]
+    {
+        let turned = format!(
+            "agent A {{ state z = 1, v = -1  discrete n: int = 0
+               flow {{ z' = v*(1 + 0.1*z)  v' = 0 }}
+               up: when {condition} {{ n := n + 1 }}
+               turn: when z <= 0 {{ v := 1  {actions} }} }}
+             system {{ a = A() }}  run {{ until 3  tolerance 1e-11 }}"
+        );
+        all_near(&times_by_all(&turned, "A.up"), &[0.0], 1e-9);
+        assert_eq!(times_by_all(&turned, "A.turn").len(), 1, "{condition} {actions}");
+    }
+    // ... and what goes on has been false
+    let on = "agent A { state z = 1, v = -1  discrete n: int = 0
+                flow { z' = v  v' = 0 }
+                up: when z >= 0 { n := n + 1 }
+                mark: when z <= 0 { n := n + 10 }
+                back: when z <= -1 { v := 1 } }
+              system { a = A() }  run { until 4 }";
+    all_near(&times_by_all(on, "A.up"), &[0.0, 3.0], 1e-9);
+}
