@@ -45,12 +45,12 @@ pub fn stand_in(reader: &mut Reader, leaf: usize, given: &mut Given) {
 }
 
 /// The other transitions that an agent may take in a configuration, by itself. None if there are interactions as well.
-pub fn others<'s>(
-    system: &'s System,
+pub fn others(
+    system: &System,
     number: usize,
     leaf: usize,
     but: Option<usize>,
-) -> Option<Vec<&'s TransitionSystem>> {
+) -> Option<Vec<&TransitionSystem>> {
     let ty = &system.types[number];
     let meets = system.interactions.iter().any(|interaction| interaction.types.contains(&number));
     let active = ty.modes[leaf].active.iter().flat_map(|&mode| &ty.modes[mode].transitions);
