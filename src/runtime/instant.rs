@@ -372,7 +372,8 @@ impl Engine<'_, '_> {
             let AtomState { instance, rooted, leap, .. } = self.guards.atoms[index];
             let is_root = rooted && leap.is_none() && atom.relation != Relation::Crossing;
             let reads_anew = atom.slots.iter().any(|&slot| restarted.contains(&slots[slot]));
-            if is_root && reads_anew && concerned.binary_search(&instance).is_ok() {
+            let is_active = self.guards.instances[instance as usize].active;
+            if is_root && is_active && reads_anew && concerned.binary_search(&instance).is_ok() {
                 self.settle(index, Rule::Rates, &Written::default());
             }
         }
