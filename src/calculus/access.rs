@@ -9,6 +9,11 @@ impl System {
     pub fn action_lists(&self) -> impl Iterator<Item = &ActionList> {
         action_lists(&self.types, &self.interactions)
     }
+
+    /// Whether any action makes agents.
+    pub fn creates(&self) -> bool {
+        self.action_lists().any(ActionList::creates)
+    }
 }
 
 /// All lists of actions: those of agents, by their types, then those of interactions.
@@ -45,14 +50,23 @@ impl Condition {
 }
 
 impl ActionList {
+    fn any(&self, is_one: fn(&ActionStep) -> bool) -> bool {
+        any_step(&self.steps, is_one)
+    }
+
+    /// Whether it makes agents.
+    pub fn creates(&self) -> bool {
+        self.any(|step| matches!(step, ActionStep::Create(_)))
+    }
+
     /// Whether it removes agents.
     pub fn destroys(&self) -> bool {
-        destroys(&self.steps)
+        self.any(|step| matches!(step, ActionStep::Destroy { .. }))
     }
 
     /// Whether it may end the run.
     pub fn stops(&self) -> bool {
-        stops(&self.steps)
+        self.any(|step| matches!(step, ActionStep::Stop { .. }))
     }
 
     /// All that makes agents.
@@ -63,29 +77,11 @@ impl ActionList {
     }
 }
 
-fn destroys(steps: &[ActionStep]) -> bool {
+/// Whether a step is such a one, those in branches included.
+fn any_step(steps: &[ActionStep], is_one: fn(&ActionStep) -> bool) -> bool {
     steps.iter().any(|step| match step {
-        ActionStep::Destroy { .. } => true,
-        ActionStep::If { then, otherwise, .. } => destroys(then) || destroys(otherwise),
-        ActionStep::Assign { .. }
-        | ActionStep::Draw { .. }
-        | ActionStep::Emit { .. }
-        | ActionStep::Goto { .. }
-        | ActionStep::Stop { .. }
-        | ActionStep::Create(_) => false,
-    })
-}
-
-fn stops(steps: &[ActionStep]) -> bool {
-    steps.iter().any(|step| match step {
-        ActionStep::Stop { .. } => true,
-        ActionStep::If { then, otherwise, .. } => stops(then) || stops(otherwise),
-        ActionStep::Assign { .. }
-        | ActionStep::Draw { .. }
-        | ActionStep::Emit { .. }
-        | ActionStep::Goto { .. }
-        | ActionStep::Destroy { .. }
-        | ActionStep::Create(_) => false,
+        ActionStep::If { then, otherwise, .. } => any_step(then, is_one) || any_step(otherwise, is_one),
+        step => is_one(step),
     })
 }
 

@@ -23,8 +23,7 @@ impl Bounds {
     /// At t = 0, with whatever parameters and data. Only what the text declares is certain then.
     pub fn at_start(system: &System) -> Self {
         // The place of an agent that is created may be any.
-        let creates = system.action_lists().any(|list| !list.births().is_empty());
-        let n_agents = if creates { REAL.hi } else { system.population.agents.len() as f64 };
+        let n_agents = if system.creates() { REAL.hi } else { system.population.agents.len() as f64 };
         let aux = system.types.iter().map(|ty| columns(ty, n_agents)).collect();
         let mut bounds = Self { aux };
         let starts = hulls(system, |agent| &agent.discretes);

@@ -172,7 +172,7 @@ impl<'p> Engine<'p, '_> {
             let most = Extreme::Least.of(reached.greatest, floor);
             let lowest = Extreme::Least.of(floor, held.least);
             let sides = [reached.sides[0] || !floor.closed, reached.sides[1] || floor.closed];
-            if !may_improve(Extreme::Greatest, most, &sides, best) || !floor.exceeds(reached.least) {
+            if !may_improve(Extreme::Greatest, most, &sides, best, 0.0) || !floor.exceeds(reached.least) {
                 // Nothing better here; or only `before` counts, which never rises.
             } else if !reached.greatest.exceeds(lowest) || !floor.exceeds(held.least) {
                 // Only the goal counts, or the least so far.
@@ -271,10 +271,10 @@ fn end_of(bound: &Bound, extreme: Extreme) -> Robustness {
     }
 }
 
-/// Whether margins up to `end`, on these sides where they are zero, may be better than the best so far.
-fn may_improve(extreme: Extreme, end: Robustness, sides: &[bool; 2], best: Robustness) -> bool {
+/// Whether margins up to `end`, on these sides where they are zero, may be better than the best so far, by more than `noise`.
+fn may_improve(extreme: Extreme, end: Robustness, sides: &[bool; 2], best: Robustness, noise: f64) -> bool {
     let sign = extreme.sign();
-    improves(sign * end.value, sign * best.value) || may_change_side(extreme, end, sides, best)
+    improves(sign * end.value + noise, sign * best.value) || may_change_side(extreme, end, sides, best)
 }
 
 /// Whether the best so far is zero, and they may be zero on the better side.
@@ -329,10 +329,7 @@ fn search(margins: &mut Margins<'_, '_>, extreme: Extreme, (s, e): (f64, f64), f
     while let Some((a, b)) = pieces.pop_front() {
         looked_at += 1;
         let bound = margins.over(a, b);
-        let end = end_of(&bound, extreme);
-        let sign = extreme.sign();
-        let may_improve = improves(sign * end.value + noise, sign * best.value)
-            || may_change_side(extreme, end, &bound.sides, best);
+        let may_improve = may_improve(extreme, end_of(&bound, extreme), &bound.sides, best, noise);
         let monotone = bound.slope.lo >= 0.0 || bound.slope.hi <= 0.0;
         if !may_improve || monotone || b - a <= time_resolution(b) {
             continue;

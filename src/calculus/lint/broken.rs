@@ -13,7 +13,7 @@ use crate::calculus::graph::Node;
 use crate::calculus::layout::Layout;
 use crate::calculus::lint::Warning;
 use crate::calculus::lint::certain::{holds, is_false, restrictions};
-use crate::calculus::lint::effects::{effect, entered, guard, may_end, nodes, read_by, reads};
+use crate::calculus::lint::effects::{effect, entered, guard, may_end, nodes, read_by, reads, with_params};
 use crate::calculus::lint::flowing::{Given, add_rates, derivatives, others, stand_in};
 use crate::calculus::lint::starts::Starts;
 use crate::calculus::reader::Reader;
@@ -27,9 +27,7 @@ pub fn invariants(system: &System, bounds: &Bounds, starts: &Starts, found: &mut
     if may_end(system) {
         return;
     }
-    // Who is created may have other parameters.
-    let creates = system.action_lists().any(|list| !list.births().is_empty());
-    let of_these = if creates { bounds.clone() } else { bounds.with_params(system) };
+    let of_these = with_params(system, bounds);
     let is_simple =
         |ty: &AgentSystem| ty.regions.len() == 1 && ty.modes.iter().any(|mode| has_invariant(&mode.claims));
     let simple: Vec<bool> = system.types.iter().map(is_simple).collect();

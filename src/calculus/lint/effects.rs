@@ -2,6 +2,7 @@
 
 use rustc_hash::FxHashSet;
 
+use crate::calculus::bounds::Bounds;
 use crate::calculus::graph::{Node, NodeId};
 use crate::calculus::system::{
     ActionList, ActionStep, AgentSystem, Condition, Destination, Entry, FunctionId, Guard, Inside, System,
@@ -105,7 +106,8 @@ pub fn effect<'s>(ty: &'s AgentSystem, transition: &'s TransitionSystem) -> Effe
     }
     let mut writes = unclear.clone();
     writes.extend(targets(&transition.actions));
-    let stops = stops(&transition.actions.steps) || others.iter().any(|list| stops(&list.steps));
+    let stops = |list: &ActionList| list.stops() || list.creates() || list.destroys();
+    let stops = stops(&transition.actions) || others.into_iter().any(stops);
     Effect { own: &transition.actions, unclear, writes, stops }
 }
 
@@ -123,17 +125,6 @@ fn conditional(steps: &[ActionStep], found: &mut FxHashSet<Entry>) {
             ActionStep::Create(_) | ActionStep::Destroy { .. } => {}
         }
     }
-}
-
-fn stops(steps: &[ActionStep]) -> bool {
-    steps.iter().any(|step| match step {
-        ActionStep::Stop { .. } | ActionStep::Create(_) | ActionStep::Destroy { .. } => true,
-        ActionStep::If { then, otherwise, .. } => stops(then) || stops(otherwise),
-        ActionStep::Assign { .. }
-        | ActionStep::Draw { .. }
-        | ActionStep::Emit { .. }
-        | ActionStep::Goto { .. } => false,
-    })
 }
 
 /// Transitions that have their turn before number `k` of a type while its source is active, and may lead out of it: those of modes
@@ -171,6 +162,11 @@ pub fn comes_before(system: &System, first: &TransitionSystem, second: &Transiti
 pub fn read_by(system: &System, ty: &AgentSystem, transitions: &[&TransitionSystem]) -> FxHashSet<Entry> {
     let guards = transitions.iter().filter_map(|transition| guard(transition));
     guards.flat_map(|guard| reads(system, ty, &nodes(system, guard))).collect()
+}
+
+/// What parameters can hold, too: those of the agents that there are, unless others are created.
+pub fn with_params(system: &System, bounds: &Bounds) -> Bounds {
+    if system.creates() { bounds.clone() } else { bounds.with_params(system) }
 }
 
 /// Whether some action may end the run, or remove agents, at any time.

@@ -7,11 +7,10 @@
 //! before for everybody who starts there.
 
 use crate::calculus::bounds::{Bounds, REAL};
-use crate::calculus::form::FormId;
 use crate::calculus::graph::Node;
 use crate::calculus::lint::Warning;
 use crate::calculus::lint::certain::{holds, is_false};
-use crate::calculus::lint::effects::{effect, entered, may_end, nodes, plain_guard, reads};
+use crate::calculus::lint::effects::{effect, entered, may_end, nodes, plain_guard, reads, with_params};
 use crate::calculus::lint::flowing::{Given, add_rates, derivatives, others, stand_in};
 use crate::calculus::lint::starts::Starts;
 use crate::calculus::reader::Reader;
@@ -34,9 +33,7 @@ pub fn transitions(system: &System, bounds: &Bounds, starts: &Starts, found: &mu
     if may_end(system) {
         return;
     }
-    // Who is created may have other parameters.
-    let creates = system.action_lists().any(|list| !list.births().is_empty());
-    let of_these = if creates { bounds.clone() } else { bounds.with_params(system) };
+    let of_these = with_params(system, bounds);
     let until = system.run.until.unwrap_or(f64::INFINITY);
     for (number, ty) in system.types.iter().enumerate().filter(|(_, ty)| ty.regions.len() == 1) {
         for (k, transition) in ty.transitions.iter().enumerate() {
@@ -245,7 +242,7 @@ impl<'s> Agent<'s> {
             _ => None,
         })?;
         reader.read_as(&transition.frame, given.clone(), None);
-        let form: FormId = reader.function(value);
+        let form = reader.function(value);
         match reader.forms.as_constant(form) {
             Some(constant) => Some((column, 0.0, constant)),
             None => reader.forms.as_leaf(form),
