@@ -58,6 +58,7 @@ impl<'p> Engine<'p, '_> {
             self.guards.atoms[index].sideless = true;
             if !self.guards.atoms[index].left_out && !self.settle_far(index) {
                 self.settle(index, rule, &Written::default());
+                self.note_moving_in(index, rule);
             }
         }
         let first = self.guards.instances[instance as usize].rising as usize;

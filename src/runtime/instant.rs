@@ -343,12 +343,25 @@ impl Engine<'_, '_> {
             state.rooted = false;
             if was_rooted || self.reads_written(index, written) {
                 self.settle(index, Rule::Rates, written);
+                self.note_moving_in(index, Rule::Rates);
             }
         }
         if !self.guards.definition(instance).folds.is_empty() {
             self.settle_folds(instance);
         }
         self.note_rising(instance);
+    }
+
+    /// What moves in from its boundary, where it has fired or been armed by a transition, is true like a root: until the end of the instant,
+    /// whatever turns its flow, unless what it reads is written (rule 3).
+    pub fn note_moving_in(&mut self, index: usize, rule: Rule) {
+        let (atom, _) = self.guards.atom_slots(&self.agents, index);
+        let is_plain = atom.relation != Relation::Crossing && atom.jumps.is_none() && atom.folds.is_empty();
+        let state = &mut self.guards.atoms[index];
+        if rule == Rule::Rates && state.truth && state.slack > 0.0 && is_plain {
+            (state.rooted, state.near) = (true, self.present.time);
+            self.guards.roused.push(index as u32);
+        }
     }
 
     /// A crossing is true for one micro-step only.

@@ -18,8 +18,6 @@ pub struct Message {
 pub struct Inbox {
     /// The first is at its turn or comes next.
     pub waiting: Vec<Message>,
-    /// The first has been at its turn before.
-    pub begun: bool,
     /// Something has fired by the first.
     pub heard: bool,
     /// What it enabled in the last micro-step, and has not fired; with how often its mode had been entered.
@@ -30,7 +28,7 @@ impl Inbox {
     /// The first is over.
     pub fn next(&mut self) {
         self.waiting.remove(0);
-        (self.begun, self.heard) = (false, false);
+        self.heard = false;
         self.enabled.clear();
     }
 }

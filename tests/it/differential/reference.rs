@@ -424,12 +424,12 @@ impl<'a> Reference<'a> {
                 let inbox = &mut self.post.inboxes[agent];
                 if !found.is_empty() {
                     enabled.extend(found.iter().map(|(instance, _)| *instance));
-                    (inbox.begun, inbox.enabled) = (true, found);
+                    inbox.enabled = found;
                     break;
                 }
-                let begun = inbox.begun;
+                let heard = inbox.heard;
                 inbox.next();
-                if !begun {
+                if !heard {
                     break;
                 }
             }

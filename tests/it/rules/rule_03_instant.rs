@@ -123,6 +123,32 @@ fn rule_03_the_second_rate_decides_where_the_first_is_zero() {
 }
 
 #[test]
+fn rule_03_what_moved_in_when_it_was_armed_is_true_whatever_turns_its_flow() {
+    for guard in ["x >= 0", "x > 0"] {
+        let run = simulate_by_both_forms(&format!(
+            "agent A {{ state x = -1, v = 1  flow {{ x' = v  v' = 0 }}
+               initial mode Low {{ up: when x >= 0 -> High }}
+               mode High {{ turn: when v > 0 priority 1 {{ v := -1 }}  hit: when {guard} {{ }} }} }}
+             system {{ a = A() }}  run {{ until 2 }}"
+        ));
+        assert_eq!(run.log(), ["0 A.up a Low->High", "1 A.turn a", "2 A.hit a"], "{guard}");
+    }
+}
+
+#[test]
+fn rule_03_what_has_fired_moving_in_is_true_until_the_instant_is_over() {
+    // the flow turns back and forth at the root: x >= 0 has not been false in between
+    let run = simulate_by_both_forms(
+        "agent A { state x = -1, v = 1  discrete n: int = 0  flow { x' = v  v' = 0 }
+           hit: when x >= 0 { n := n + 1 }
+           out: when n == 1 and v > 0 { v := -1 }
+           back: when v < 0 { v := 1  n := 5 } }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 A.hit a", "1 A.out a", "2 A.back a"]);
+}
+
+#[test]
 fn rule_03_held_until_the_rate_points_in() {
     // B is entered at x = 0 with v = -1: `again` is held; in the same instant v becomes 1 and it fires
     let run = simulate(
