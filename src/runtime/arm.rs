@@ -145,7 +145,7 @@ impl<'p> Engine<'p, '_> {
         self.curves.operations += kernel.operations();
         let folds = self.truths().gather(before.instance, kernel, &slots, Side::After);
         let g = truth::evaluate(&self.agents, &mut self.present, kernel, &slots, &folds);
-        let (mut touched, mut enters) = (false, false);
+        let (mut touched, mut enters, mut stands) = (false, false, false);
         let unchanged = rule == Rule::Woken
             && folds.is_empty()
             && !self.leads_elsewhere(index, written)
@@ -205,7 +205,12 @@ impl<'p> Engine<'p, '_> {
                 Rule::Rates => decide(),
                 Rule::Woken if unchanged && clear => before.truth,
                 Rule::Fresh | Rule::Woken if clear => g < 0.0,
-                Rule::Woken if unchanged || zero.is_some_and(|zero| zero.by_rates) => decide(),
+                Rule::Woken if unchanged => decide(),
+                Rule::Woken if zero.is_some_and(|zero| zero.by_rates) => {
+                    // What the rates have decided to be true is so for the whole instant, while it is on its boundary (rule 3).
+                    stands = before.rooted && before.truth && g.abs() <= known;
+                    stands || decide()
+                }
                 Rule::Fresh | Rule::Woken if atom.relation == Relation::Crossing => decide(),
                 Rule::Fresh | Rule::Woken if atom.relation == Relation::Negative && atom.smooth => {
                     // The infimum of the times at which it is true is this one (rule 3), though it is not true at it.
@@ -229,7 +234,7 @@ impl<'p> Engine<'p, '_> {
         let by_rates = rule == Rule::Rates || zero.is_some_and(|zero| zero.by_rates);
         let width = zero.map_or_else(|| Zero::width_of(state.slack, time), |zero| zero.width);
         let zero = (state.slack > 0.0).then_some(Zero { width, by_rates });
-        state.rooted = enters || rule == Rule::Woken && before.rooted && unchanged;
+        state.rooted = enters || stands || rule == Rule::Woken && before.rooted && unchanged;
         if state.touched || state.rooted {
             self.guards.roused.push(index as u32);
         }
@@ -239,37 +244,6 @@ impl<'p> Engine<'p, '_> {
         let kept = unchanged && before.rooted;
         self.recertify(index, if kept { before.certified.max(time) } else { time });
         self.guards.atoms[index].settled = !(unchanged && before.slack == 0.0);
-    }
-
-    /// Whether a comparison of aggregates has other members at the very instant than just after it, and holds with those.
-    fn true_exactly_now(&mut self, instance: u32, atom: &Atom, slots: &Slots) -> bool {
-        let kernel = self.program.kernel(atom.value);
-        let [exactly, after] =
-            [Side::At, Side::After].map(|side| self.truths().gather(instance, kernel, slots, side));
-        let g = truth::evaluate(&self.agents, &mut self.present, kernel, slots, &exactly);
-        if g == truth::evaluate(&self.agents, &mut self.present, kernel, slots, &after) {
-            return false;
-        }
-        g < 0.0 || g.abs() <= self.rounding(kernel, slots, &exactly) && closed(atom.relation, false)
-    }
-
-    /// Settles the comparisons of aggregates of an instance, some of which have other members now.
-    pub fn settle_folds(&mut self, instance: u32) {
-        for index in self.guards.atoms_of(instance) {
-            let (atom, slots) = self.guards.atom_slots(&self.agents, index);
-            if !atom.folds.is_empty() {
-                let before = self.guards.atoms[index];
-                self.settle(index, Rule::Rates, &Written::default());
-                let touched = match atom.relation {
-                    Relation::Crossing => !before.sideless && self.guards.atoms[index].truth != before.truth,
-                    Relation::NonPositive | Relation::Negative => {
-                        self.true_exactly_now(instance, atom, &slots)
-                    }
-                };
-                self.guards.atoms[index].touched |= before.touched || touched;
-                self.guards.roused.push(index as u32);
-            }
-        }
     }
 
     /// Whether a comparison reads something that was written.

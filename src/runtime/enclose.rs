@@ -145,6 +145,23 @@ impl Enclosures {
         self.boxes.iter().enumerate().for_each(|(state, &bound)| tell(state, bound));
     }
 
+    /// The same of an agent that is a group of its own, by pieces of the stretch: longer ones have bounds so.
+    pub fn states_in_pieces(
+        &mut self,
+        agents: &Agents<'_>,
+        groups: &[Group],
+        agent: usize,
+        span: (f64, f64),
+        tell: &mut dyn FnMut(usize, Interval),
+    ) {
+        let group = &groups[agents.agents[agent].group];
+        if group.members.len() > 1 || !group.leaders.is_empty() {
+            return;
+        }
+        let boxes = self.led(agents, group, &|_| None, span);
+        boxes.iter().flatten().enumerate().for_each(|(state, &bound)| tell(state, bound));
+    }
+
     /// Appends the box of an agent's states over [t, t + horizon], from bounds of their rates.
     fn add_box(&mut self, agents: &Agents<'_>, agent: usize, rates: &[Interval], t: f64, horizon: f64) {
         self.state.resize(agents.agents[agent].states.len(), 0.0);

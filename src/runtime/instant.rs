@@ -5,11 +5,11 @@ use std::collections::BTreeSet;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::base::Span;
-use crate::codegen::program::{ClaimKind, ClaimSystem, Relation, Trigger};
+use crate::codegen::program::{Atom, ClaimKind, ClaimSystem, Relation, Trigger};
 use crate::codegen::trace::Compared;
 use crate::runtime::act::{Claimed, Effect, Written, claims};
 use crate::runtime::arm::Rule;
-use crate::runtime::atom_state::AtomState;
+use crate::runtime::atom_state::{AtomState, closed};
 use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Place, Reason, contested};
 use crate::runtime::fate::Fate;
@@ -352,8 +352,39 @@ impl Engine<'_, '_> {
         self.note_rising(instance);
     }
 
+    /// Whether a comparison of aggregates has other members at the very instant than just after it, and holds with those.
+    fn true_exactly_now(&mut self, instance: u32, atom: &Atom, slots: &Slots) -> bool {
+        let kernel = self.program.kernel(atom.value);
+        let [exactly, after] =
+            [Side::At, Side::After].map(|side| self.truths().gather(instance, kernel, slots, side));
+        let g = truth::evaluate(&self.agents, &mut self.present, kernel, slots, &exactly);
+        if g == truth::evaluate(&self.agents, &mut self.present, kernel, slots, &after) {
+            return false;
+        }
+        g < 0.0 || g.abs() <= self.rounding(kernel, slots, &exactly) && closed(atom.relation, false)
+    }
+
+    /// Settles the comparisons of aggregates of an instance, some of which have other members now.
+    pub fn settle_folds(&mut self, instance: u32) {
+        for index in self.guards.atoms_of(instance) {
+            let (atom, slots) = self.guards.atom_slots(&self.agents, index);
+            if !atom.folds.is_empty() {
+                let before = self.guards.atoms[index];
+                self.settle(index, Rule::Rates, &Written::default());
+                let touched = match atom.relation {
+                    Relation::Crossing => !before.sideless && self.guards.atoms[index].truth != before.truth,
+                    Relation::NonPositive | Relation::Negative => {
+                        self.true_exactly_now(instance, atom, &slots)
+                    }
+                };
+                self.guards.atoms[index].touched |= before.touched || touched;
+                self.guards.roused.push(index as u32);
+            }
+        }
+    }
+
     /// What moves in from its boundary, where it has fired or been armed by a transition, is true like a root: until the end of the instant,
-    /// whatever turns its flow, unless what it reads is written (rule 3).
+    /// whatever turns its flow, unless it is written off its boundary (rule 3).
     pub fn note_moving_in(&mut self, index: usize, rule: Rule) {
         let (atom, _) = self.guards.atom_slots(&self.agents, index);
         let is_plain = atom.relation != Relation::Crossing && atom.jumps.is_none() && atom.folds.is_empty();

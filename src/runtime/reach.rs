@@ -122,20 +122,37 @@ impl Reaches {
             self.kept[agent].pure = false;
             out.resize(n, Interval::WHOLE);
         }
-        // Where it is later than it has come to is not known; of one that runs ahead it is known where it was until then.
-        let clock = anchor(agents, groups, agent).0;
-        let is_ahead = agents.cold.is_cold(agent) && from <= clock;
-        let passed: &[Interval] = if is_ahead { agents.cold.bounds(agent) } else { &[] };
-        let since = if is_ahead { clock } else { from.min(clock) };
+        let Known { since, passed } = known(agents, groups, agent, from);
         let mut fill = |state: usize, bound: Interval| {
             if out[state].is_whole() {
                 out[state] = passed.get(state).map_or(bound, |passed| passed.hull(bound));
             }
         };
-        if is_ahead && to <= clock {
+        if !passed.is_empty() && to <= since {
             passed.iter().enumerate().for_each(|(state, &bound)| fill(state, bound));
         } else {
             enclosures.states(agents, groups, agent, (since, to), &mut fill);
+        }
+    }
+
+    /// The same at greater expense: where no box is found over all of [from, to], by pieces.
+    pub fn way(
+        &mut self,
+        agents: &Agents<'_>,
+        groups: &[Group],
+        enclosures: &mut Enclosures,
+        agent: usize,
+        (from, to): (f64, f64),
+        out: &mut SmallVec<[Interval; 8]>,
+    ) {
+        self.states(agents, groups, enclosures, agent, (from, to), out);
+        let Known { since, passed } = known(agents, groups, agent, from);
+        if to > since && out.iter().any(|bound| bound.is_whole()) {
+            enclosures.states_in_pieces(agents, groups, agent, (since, to), &mut |state, bound| {
+                if out[state].is_whole() {
+                    out[state] = passed.get(state).map_or(bound, |passed| passed.hull(bound));
+                }
+            });
         }
     }
 
@@ -224,6 +241,24 @@ impl Reaches {
     /// x + way, with room for what the integration may be off by.
     fn padded(&self, x: f64, way: Interval) -> Interval {
         self.accuracy.padded(Interval { lo: x, hi: x }.add(way))
+    }
+}
+
+/// What is known of an agent's way from some time on.
+struct Known<'a> {
+    /// From here on it is to be bounded, s.
+    since: f64,
+    /// Of one that runs ahead: where it was until then.
+    passed: &'a [Interval],
+}
+
+fn known<'a>(agents: &'a Agents<'_>, groups: &[Group], agent: usize, from: f64) -> Known<'a> {
+    // Where it is later than it has come to is not known; of one that runs ahead it is known where it was until then.
+    let clock = anchor(agents, groups, agent).0;
+    if agents.cold.is_cold(agent) && from <= clock {
+        Known { since: clock, passed: agents.cold.bounds(agent) }
+    } else {
+        Known { since: from.min(clock), passed: &[] }
     }
 }
 

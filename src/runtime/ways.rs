@@ -61,7 +61,7 @@ impl Engine<'_, '_> {
         let span = (self.present.time, self.neighbours.until);
         let (agents, groups) = (&self.agents, &self.groups.groups);
         let mut states = Way::new();
-        self.reaches.states(agents, groups, &mut self.enclosures, agent, span, &mut states);
+        self.reaches.way(agents, groups, &mut self.enclosures, agent, span, &mut states);
         states
     }
 

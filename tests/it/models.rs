@@ -18,6 +18,7 @@ mod van_der_pol;
 mod double_crossing;
 mod multirate;
 mod flock;
+mod swarm;
 mod highway;
 mod interlock;
 mod convoy;

@@ -104,6 +104,12 @@ impl Boundary {
         })
     }
 
+    /// What is left of it after a write: what has been written off its boundary has really been true or false.
+    pub fn while_near(self, mut scope: Scope<'_>) -> Self {
+        let near = |(literal, negated, _): &(Literal, bool, Verdict)| is_near(&mut scope, literal, *negated);
+        Self(self.0.into_iter().filter(near).collect())
+    }
+
     /// What is left of it after some time.
     pub fn later(self, mut scope: Scope<'_>, world: &World) -> Self {
         let stands = |(literal, negated, verdict): &(Literal, bool, Verdict)| {

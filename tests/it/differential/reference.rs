@@ -761,6 +761,11 @@ impl<'a> Reference<'a> {
             }
             if fired || entered {
                 self.instances[instance].boundary = self.settle(instance);
+            } else {
+                let agents = self.instances[instance].agents;
+                let scope = Scope::new(self.model, &self.world, agents, self.is_pair(instance));
+                let boundary = std::mem::take(&mut self.instances[instance].boundary);
+                self.instances[instance].boundary = boundary.while_near(scope);
             }
         }
         self.arm();
