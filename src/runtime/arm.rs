@@ -58,7 +58,9 @@ impl<'p> Engine<'p, '_> {
             self.guards.atoms[index].sideless = true;
             if !self.guards.atoms[index].left_out && !self.settle_far(index) {
                 self.settle(index, rule, &Written::default());
-                self.note_moving_in(index, rule);
+                if rule == Rule::Rates {
+                    self.hold_until_calm(index);
+                }
             }
         }
         let first = self.guards.instances[instance as usize].rising as usize;
@@ -207,8 +209,9 @@ impl<'p> Engine<'p, '_> {
                 Rule::Fresh | Rule::Woken if clear => g < 0.0,
                 Rule::Woken if unchanged => decide(),
                 Rule::Woken if zero.is_some_and(|zero| zero.by_rates) => {
-                    // What the rates have decided to be true is so for the whole instant, while it is on its boundary (rule 3).
-                    stands = before.rooted && before.truth && g.abs() <= known;
+                    // A `<=` that the rates have decided to be true is so for the whole instant, while it is on its boundary (rule 3).
+                    stands =
+                        before.rooted && before.truth && g.abs() <= known && closed(atom.relation, false);
                     stands || decide()
                 }
                 Rule::Fresh | Rule::Woken if atom.relation == Relation::Crossing => decide(),

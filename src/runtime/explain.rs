@@ -87,9 +87,10 @@ impl Engine<'_, '_> {
             }
         }
         let roots = self.guards.atoms_of(instance).map(|index| &self.guards.atoms[index]);
-        let near = roots.filter(|atom| atom.rooted).map(|atom| atom.near).min_by(f64::total_cmp);
-        if let Some(near) = near {
-            return (Cause::Flow, Before::Time(near.min(time)));
+        // What is true on its boundary because it was armed there has no time before it.
+        let near = roots.filter(|atom| atom.rooted && atom.near < time).map(|atom| atom.near);
+        if let Some(near) = near.min_by(f64::total_cmp) {
+            return (Cause::Flow, Before::Time(near));
         }
         if state.aged && is_scheduled(state.entry + state.delay) && state.delay > 0.0 {
             return (Cause::After { delay: state.delay }, Before::Nothing);

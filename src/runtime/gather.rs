@@ -1,7 +1,7 @@
 //! What makes one instant (rule 4): the roots and scheduled times that are due together, and who fires by them.
 //!
-//! All that is due at the same time, within the resolution of time, is one instant; roots that lie within a wider `event_tolerance`
-//! after it join if they share an agent with something due then. Scheduled times are never moved: a root near one joins it.
+//! All that is due at exactly the same time is one instant; roots that lie within the resolution of time after it join if
+//! they share an agent with something due then. Scheduled times are never moved: a root near one joins it.
 use crate::codegen::program::{Relation, Trigger};
 use crate::runtime::detect::AtomCurve;
 use crate::runtime::engine::{Due, Engine};
@@ -76,8 +76,7 @@ impl Engine<'_, '_> {
         let (mut changed, mut near) = (Vec::new(), first);
         for due in flips {
             let index = due.number as usize;
-            // Roots that rounding does not tell apart are at one time: of two that watch one agent, neither misses what the other sees.
-            if due.time <= first + time_resolution(first) || shares(self, self.guards.atoms[index].instance) {
+            if due.time == first || shares(self, self.guards.atoms[index].instance) {
                 near = near.min(self.guards.atoms[index].near);
                 changed.push((index, due.time));
             } else {

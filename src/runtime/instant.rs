@@ -343,7 +343,7 @@ impl Engine<'_, '_> {
             state.rooted = false;
             if was_rooted || self.reads_written(index, written) {
                 self.settle(index, Rule::Rates, written);
-                self.note_moving_in(index, Rule::Rates);
+                self.hold_until_calm(index);
             }
         }
         if !self.guards.definition(instance).folds.is_empty() {
@@ -383,13 +383,14 @@ impl Engine<'_, '_> {
         }
     }
 
-    /// What moves in from its boundary, where it has fired or been armed by a transition, is true like a root: until the end of the instant,
-    /// whatever turns its flow, unless it is written off its boundary (rule 3).
-    pub fn note_moving_in(&mut self, index: usize, rule: Rule) {
+    /// A `<=` that moves in from its boundary, where it has fired or been armed by a transition, is true like a root: until the end of the
+    /// instant, whatever turns its flow, unless it is written off its boundary (rule 3).
+    pub fn hold_until_calm(&mut self, index: usize) {
         let (atom, _) = self.guards.atom_slots(&self.agents, index);
-        let is_plain = atom.relation != Relation::Crossing && atom.jumps.is_none() && atom.folds.is_empty();
+        let is_plain =
+            atom.relation == Relation::NonPositive && atom.jumps.is_none() && atom.folds.is_empty();
         let state = &mut self.guards.atoms[index];
-        if rule == Rule::Rates && state.truth && state.slack > 0.0 && is_plain {
+        if state.truth && state.slack > 0.0 && is_plain {
             (state.rooted, state.near) = (true, self.present.time);
             self.guards.roused.push(index as u32);
         }

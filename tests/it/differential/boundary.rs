@@ -13,8 +13,10 @@ const APART: f64 = 1e-4;
 /// What has been decided of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Verdict {
-    /// Moving in: true in this instant.
+    /// Moving in, and true at the boundary: true in this instant.
     True,
+    /// Moving in: true while it does.
+    Enters,
     /// Moving out: false until it has really been false, or its rate points into the true region.
     Held,
     /// Staying: this, while it stays.
@@ -67,7 +69,8 @@ impl Boundary {
             let (margin, closed) = margin(&mut scope, &literal, negated);
             if margin.abs() <= world.near {
                 let verdict = match course(&scope, world, &literal, negated) {
-                    Course::In => Verdict::True,
+                    Course::In if closed => Verdict::True,
+                    Course::In => Verdict::Enters,
                     Course::Out => Verdict::Held,
                     Course::Along => Verdict::Stays(closed),
                 };
@@ -85,7 +88,7 @@ impl Boundary {
             }
             let truth = match verdict {
                 Verdict::True => true,
-                Verdict::Held => course(scope, world, literal, *negated) == Course::In,
+                Verdict::Held | Verdict::Enters => course(scope, world, literal, *negated) == Course::In,
                 Verdict::Stays(truth) => *truth,
             };
             Some((literal.clone(), truth != *negated))
@@ -115,7 +118,7 @@ impl Boundary {
         let stands = |(literal, negated, verdict): &(Literal, bool, Verdict)| {
             let near = is_near(&mut scope, literal, *negated);
             match verdict {
-                Verdict::True => false,
+                Verdict::True | Verdict::Enters => false,
                 Verdict::Stays(_) => near,
                 Verdict::Held => near && course(&scope, world, literal, *negated) != Course::In,
             }
@@ -125,7 +128,12 @@ impl Boundary {
 
     /// What is true from the start on, where nothing is held: what is on its boundary and moves in.
     pub fn fresh(self) -> Self {
-        Self(self.0.into_iter().filter(|(.., verdict)| *verdict == Verdict::True).collect())
+        Self(
+            self.0
+                .into_iter()
+                .filter(|(.., verdict)| matches!(verdict, Verdict::True | Verdict::Enters))
+                .collect(),
+        )
     }
 }
 

@@ -123,16 +123,30 @@ fn rule_03_the_second_rate_decides_where_the_first_is_zero() {
 }
 
 #[test]
-fn rule_03_what_moved_in_when_it_was_armed_is_true_whatever_turns_its_flow() {
-    for guard in ["x >= 0", "x > 0"] {
+fn rule_03_what_is_true_at_its_boundary_when_it_is_armed_is_so_whatever_turns_its_flow() {
+    let log = |guard: &str| {
         let run = simulate_by_both_forms(&format!(
             "agent A {{ state x = -1, v = 1  flow {{ x' = v  v' = 0 }}
                initial mode Low {{ up: when x >= 0 -> High }}
                mode High {{ turn: when v > 0 priority 1 {{ v := -1 }}  hit: when {guard} {{ }} }} }}
              system {{ a = A() }}  run {{ until 2 }}"
         ));
-        assert_eq!(run.log(), ["0 A.up a Low->High", "1 A.turn a", "2 A.hit a"], "{guard}");
-    }
+        run.log()
+    };
+    assert_eq!(log("x >= 0"), ["0 A.up a Low->High", "1 A.turn a", "2 A.hit a"]);
+    // it never is beyond
+    assert_eq!(log("x > 0"), ["0 A.up a Low->High", "1 A.turn a"]);
+}
+
+#[test]
+fn rule_03_a_strict_comparison_that_moves_in_holds_beside_a_crossing() {
+    let run = simulate_by_both_forms(
+        "agent A { state x = -1, y = -1  discrete n: int = 0  flow { x' = 1  y' = 0 }
+           initial mode Low { up: when x >= 0 -> High }
+           mode High { w: when n == 0 priority 1 { n := 1  y := 2 }  both: when x > 0 and crossing(y) { } } }
+         system { a = A() }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 A.up a Low->High", "1 A.w a", "2 A.both a"]);
 }
 
 #[test]

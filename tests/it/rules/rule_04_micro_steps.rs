@@ -353,29 +353,6 @@ fn rule_04_without_a_tolerance_of_events_they_are_two() {
 }
 
 #[test]
-fn rule_04_of_two_who_watch_one_agent_neither_misses_what_the_other_answers() {
-    // their roots are found some ulps apart; what the answer of the first writes turns the flow of the one who is watched
-    let run = simulate_by_both_forms(
-        "agent Bee(mate: Cat) { state x, y
-           flow { x' = -1.177*sin(3.979*time - 0.378)  y' = 1.033*(mate.x - y) }
-           dive: after 0.271 { y := -0.649 } }
-         agent Cat(mate: Bee) { state x  discrete k: int = 2, c = 0.428
-           flow { x' = 1.13*(mate.x - x) }
-           see: when mate.y > -0.611*mate.x { k := 0  c := 0.5*mate.y + 0.791 }
-           near: when mate.x^2 + mate.x^2 <= 1.565 { k := 1 }
-           leap: when (c + 0.208)^2 < 0.678 { c := -0.879*c  x := -1.151 } }
-         system {
-           bees = Bee[1](x = 1.042, y = 1.255, mate = cats[1])
-           cats = Cat[2](x = if index == 0 then 0.311 else -0.143, mate = bees[0])
-         }
-         run { until 0.5  tolerance 1e-11 }",
-    );
-    let late: Vec<String> = run.log().into_iter().skip(5).collect();
-    assert_eq!(late, ["0 Cat.see cats[0]", "0 Cat.see cats[1]", "1 Cat.leap cats[0]", "1 Cat.leap cats[1]"]);
-    assert!(run.events[5..].iter().all(|event| event.time == run.events[5].time));
-}
-
-#[test]
 fn rule_04_agents_that_share_nothing_keep_their_instants_whatever_the_tolerance() {
     let run = simulate_to_the_end(
         "agent A(k: real) { state x = 0  flow { x' = k }  one: when x >= 1 { } }
