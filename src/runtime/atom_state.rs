@@ -18,7 +18,7 @@ pub struct AtomState {
     pub touched: bool,
     /// Whether `other` leaves out what it binds, or nobody has the seat: nobody reads its truth.
     pub left_out: bool,
-    /// Whether its truth was given by a root at `certified`: it counts as found in that instant (rule 4).
+    /// Whether its truth was given by a root at `certified`, or by its rates on its boundary there: it stays so in that instant (rules 3 and 4).
     pub rooted: bool,
     /// Up to here its truth does not change, s.
     pub certified: f64,
