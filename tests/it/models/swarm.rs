@@ -1,5 +1,6 @@
 //! Do drones meet when they should, and lose no energy? Their ways between meetings are circles and swings, known on paper.
 
+use super::first_root;
 use crate::harness::{Case, near};
 
 #[derive(Clone, Copy, Debug)]
@@ -67,13 +68,9 @@ fn meetings(drones: &mut [Drone], end: f64, step: f64) -> Vec<(f64, usize, usize
                 if gap(0.0) <= 1e-9 || gap(to - time) > 0.0 {
                     continue;
                 }
-                let (mut lo, mut hi) = (0.0, to - time);
-                for _ in 0..60 {
-                    let middle = 0.5 * (lo + hi);
-                    if gap(middle) > 0.0 { lo = middle } else { hi = middle }
-                }
-                if first.is_none_or(|(t, ..)| hi < t) {
-                    first = Some((hi, a, b));
+                let met = first_root(&gap, 0.0, to - time);
+                if first.is_none_or(|(t, ..)| met < t) {
+                    first = Some((met, a, b));
                 }
             }
         }
