@@ -298,6 +298,7 @@ impl Engine<'_, '_> {
         match write.target {
             Entry::State(k) => {
                 self.restart(write.agent, written);
+                self.approach.give(write.agent, self.present.time);
                 self.agents.agents[write.agent].states[k] = write.value;
             }
             Entry::Aux(column) => {
@@ -355,6 +356,9 @@ impl Engine<'_, '_> {
             self.catch_up_with(agent);
             let number = self.agents.agents[agent].group;
             let group = &mut self.groups.groups[number];
+            for &member in &group.members {
+                self.approach.note(member, time, || self.agents.rates_before(member, time));
+            }
             if group.clock > time && group.clock < f64::INFINITY {
                 self.n_cuts += group.members.len() as u64;
             }

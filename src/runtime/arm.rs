@@ -159,11 +159,13 @@ impl<'p> Engine<'p, '_> {
                 Rule::Woken => !unchanged,
                 Rule::Rates => self.value_before(kernel, &slots, written).is_some_and(|old| old != g),
             };
+        let goes_on = rule == Rule::Rates && !anew;
+        let by_approach = if goes_on { self.width_by_approach(atom, &slots) } else { 0.0 };
         // A zero that is written from what was zero in this instant is known no better than that was.
         let known = match (anew, rule) {
             (true, _) => zero.map_or(0.0, |zero| zero.width),
             (false, Rule::Fresh | Rule::Woken) if !unchanged => 0.0,
-            (false, _) => before.slack,
+            (false, _) => before.slack.max(by_approach),
         };
         if anew {
             self.guards.atoms[index].slack = if g.abs() <= known { known } else { 0.0 };
@@ -235,7 +237,8 @@ impl<'p> Engine<'p, '_> {
         state.sideless = before.sideless && !has_side;
         state.touched = touched;
         let by_rates = rule == Rule::Rates || zero.is_some_and(|zero| zero.by_rates);
-        let width = zero.map_or_else(|| Zero::width_of(state.slack, time), |zero| zero.width);
+        let width =
+            zero.map_or_else(|| Zero::width_of(state.slack, time).max(by_approach), |zero| zero.width);
         let zero = (state.slack > 0.0).then_some(Zero { width, by_rates });
         state.rooted = enters || stands || rule == Rule::Woken && before.rooted && unchanged;
         if state.touched || state.rooted {

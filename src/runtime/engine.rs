@@ -33,6 +33,7 @@ use crate::runtime::repetition::Repetitions;
 use crate::runtime::solve::control::Accuracy;
 use crate::runtime::solve::{MethodName, Methods};
 use crate::runtime::verdicts::Monitors;
+use crate::runtime::zeros::Approach;
 
 /// A time at which something named by a number is due; void if the version is not that of the thing any more.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -154,6 +155,8 @@ pub struct Engine<'p, 'o> {
     pub has_thawed: bool,
     /// What is due when.
     pub queues: Queues,
+    /// How agents came to the instant at hand.
+    pub approach: Approach,
     /// Messages under way.
     pub mail: Mail,
     /// Hazards of pairs that flow.
@@ -258,6 +261,7 @@ impl<'p, 'o> Engine<'p, 'o> {
             points: Vec::new(),
             registers: Vec::new(),
             queues: Queues::default(),
+            approach: Approach::default(),
             mail: Mail::default(),
             exposures: Exposures::default(),
             notes: observer.wants_reasons().then(|| Box::new(Notes::new(&agents))),

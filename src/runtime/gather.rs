@@ -1,7 +1,7 @@
 //! What makes one instant (rule 4): the roots and scheduled times that are due together, and who fires by them.
 //!
-//! All that is due at exactly the same time is one instant; roots that lie within the resolution of time after it join if
-//! they share an agent with something due then. Scheduled times are never moved: a root near one joins it.
+//! Roots that rounding does not tell apart are one instant, and so are roots within the resolution of time after them that share an
+//! agent with them: at the last of them. Scheduled times are never moved: a root near one joins it.
 use crate::codegen::program::{Relation, Trigger};
 use crate::runtime::detect::AtomCurve;
 use crate::runtime::engine::{Due, Engine};
@@ -13,7 +13,16 @@ use crate::runtime::present::Depth;
 use crate::runtime::solve::roots::Curve;
 use crate::runtime::solve::time_resolution;
 use crate::runtime::truth::Side;
-use crate::runtime::zeros::Zero;
+use crate::runtime::zeros::{Zero, root_width};
+
+/// Whom the causes of an instant write and read, by agents and by types; each rising.
+#[derive(Debug, Default)]
+struct Circle {
+    written: Vec<usize>,
+    read: Vec<usize>,
+    written_types: Vec<usize>,
+    read_types: Vec<usize>,
+}
 
 impl Engine<'_, '_> {
     /// The width of an instant at a time, s: roots of those who share an agent that lie within it of the first are in it (rule 4).
@@ -49,45 +58,50 @@ impl Engine<'_, '_> {
             return Ok(());
         }
         let flips = self.pop_flips(window);
-        let schedules = self.pop_schedules(window);
+        let (now, later): (Vec<Due>, Vec<Due>) =
+            self.pop_schedules(window).into_iter().partition(|due| due.time == first);
         let arrived = self.mail.arrive(first);
-        let seeds: Vec<u32> = flips
+        let arriving = self.mail.arriving(first, window);
+        let is_scheduled = !now.is_empty() || !arrived.is_empty();
+        // Roots that rounding does not tell apart are one; a scheduled time is exact.
+        let until = if is_scheduled { first } else { (first + root_width(first)).min(window) };
+        let instance = |due: &Due| self.guards.atoms[due.number as usize].instance;
+        let causes: Vec<u32> = flips
             .iter()
-            .filter(|due| due.time == first)
-            .map(|due| self.guards.atoms[due.number as usize].instance)
-            .chain(schedules.iter().filter(|due| due.time == first).map(|due| due.number))
+            .filter(|due| due.time <= until)
+            .map(instance)
+            .chain(now.iter().map(|due| due.number))
             .chain(arrived.iter().flat_map(|message| self.listening(message)))
             .collect();
-        let (now, later): (Vec<Due>, Vec<Due>) = schedules.into_iter().partition(|due| due.time == first);
-        let shares =
-            |engine: &Self, instance: u32| seeds.iter().any(|&seed| engine.share_an_agent(seed, instance));
-        let is_scheduled = !now.is_empty() || !arrived.is_empty();
-        let awaited = later.iter().filter(|due| shares(self, due.number)).map(|due| due.time);
-        let arriving = self.mail.arriving(first, window).into_iter();
-        let arriving = arriving
-            .filter(|(_, message)| self.listening(message).iter().any(|&instance| shares(self, instance)));
-        let awaited = awaited.chain(arriving.map(|(time, _)| time)).min_by(f64::total_cmp);
+        let is_alone = later.is_empty() && arriving.is_empty() && flips.iter().all(|due| due.time <= until);
+        let circle = if is_alone { Circle::default() } else { self.circle(&causes) };
+        let next_scheduled = later
+            .iter()
+            .map(|due| (due.time, vec![due.number]))
+            .chain(arriving.iter().map(|(time, message)| (*time, self.listening(message))))
+            .filter(|(time, who)| {
+                *time <= until || who.iter().any(|&instance| self.shares(&circle, instance))
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0));
         self.queues.schedules.extend(later);
-        if let Some(scheduled) = awaited.filter(|_| !is_scheduled) {
-            self.postpone(flips, first, scheduled);
+        if let Some((time, who)) = next_scheduled.filter(|_| !is_scheduled) {
+            self.postpone(flips, until, time, &who);
             return Ok(());
         }
+        let (joined, others): (Vec<Due>, Vec<Due>) =
+            flips.into_iter().partition(|due| due.time <= until || self.shares(&circle, instance(due)));
+        self.queues.flips.extend(others);
+        let near = joined.iter().map(|due| self.guards.atoms[due.number as usize].near).fold(first, f64::min);
+        let changed: Vec<(usize, f64)> = joined.iter().map(|due| (due.number as usize, due.time)).collect();
         let mut time = first;
-        let (mut changed, mut near) = (Vec::new(), first);
-        for due in flips {
-            let index = due.number as usize;
-            if due.time == first || shares(self, self.guards.atoms[index].instance) {
-                near = near.min(self.guards.atoms[index].near);
-                changed.push((index, due.time));
-            } else {
-                self.queues.flips.push(due);
-            }
-        }
         if !is_scheduled {
+            time = self.last_root(first, &changed);
             time = self.defined_side(time, near, &changed);
             time = self.after_turns(time, &changed);
         }
         self.present.go(time);
+        let off = changed.iter().map(|&(_, root)| (time - root).abs()).fold(0.0, f64::max);
+        self.approach.begin(time, off);
         let mut concerned: Vec<u32> = Vec::new();
         let mut refold: Vec<u32> = Vec::new();
         let mut at_once: Vec<usize> = Vec::new();
@@ -114,6 +128,7 @@ impl Engine<'_, '_> {
         let now = self.pop_schedules(time);
         self.mail.arrive(time);
         self.present.go(time);
+        self.approach.begin(time, 0.0);
         let mut concerned: Vec<u32> = Vec::new();
         for &index in zeros {
             self.guards.atoms[index].leap = None;
@@ -165,10 +180,15 @@ impl Engine<'_, '_> {
         Ok(())
     }
 
-    /// Roots near a scheduled time join it: they wait until then.
-    fn postpone(&mut self, flips: Vec<Due>, first: f64, scheduled: f64) {
+    /// Roots near a scheduled time join it, if their transitions share an agent with those that wait for it or rounding does not tell
+    /// their times apart: they wait until then.
+    fn postpone(&mut self, flips: Vec<Due>, until: f64, scheduled: f64, who: &[u32]) {
+        let circle = self.circle(who);
         for mut due in flips {
-            if due.time == first {
+            let state = &self.guards.atoms[due.number as usize];
+            if due.time <= until.min(scheduled)
+                && (scheduled <= until || self.shares(&circle, state.instance))
+            {
                 due.time = scheduled;
                 self.guards.atoms[due.number as usize].flip = scheduled;
             }
@@ -204,16 +224,41 @@ impl Engine<'_, '_> {
         schedules
     }
 
-    /// Rule 4: whether one writes what the other reads or writes (by agents).
-    fn share_an_agent(&self, a: u32, b: u32) -> bool {
-        let reads = |reader: u32, agent: usize| {
-            let definition = self.guards.definition(reader);
-            self.guards.slots(&self.agents, reader).contains(&agent)
-                || definition.quantified.contains(&self.agents.agents[agent].ty)
+    /// Whom these instances write and read.
+    fn circle(&self, instances: &[u32]) -> Circle {
+        let mut circle = Circle::default();
+        for &instance in instances {
+            circle.written.extend(self.guards.roots(instance));
+            circle
+                .read
+                .extend(self.guards.slots(&self.agents, instance).iter().filter(|&&agent| agent != ABSENT));
+            circle.read_types.extend(&self.guards.definition(instance).quantified);
+        }
+        circle.written_types.extend(circle.written.iter().map(|&agent| self.agents.agents[agent].ty));
+        for list in [&mut circle.written, &mut circle.read, &mut circle.written_types, &mut circle.read_types]
+        {
+            list.sort_unstable();
+            list.dedup();
+        }
+        circle
+    }
+
+    /// Rule 4: whether an instance writes what others read or write, or they what it reads (by agents).
+    fn shares(&self, circle: &Circle, instance: u32) -> bool {
+        let has = |list: &[usize], number: usize| list.binary_search(&number).is_ok();
+        let is_read = |&agent: &usize| {
+            has(&circle.read, agent) || has(&circle.read_types, self.agents.agents[agent].ty)
         };
-        let touches =
-            |writer: u32, reader: u32| self.guards.roots(writer).iter().any(|&agent| reads(reader, agent));
-        touches(a, b) || touches(b, a)
+        let definition = self.guards.definition(instance);
+        self.guards.roots(instance).iter().any(is_read)
+            || self.guards.slots(&self.agents, instance).iter().any(|&agent| has(&circle.written, agent))
+            || definition.quantified.iter().any(|&ty| has(&circle.written_types, ty))
+    }
+
+    /// The last of the roots that make one instant at `first`: all of their conditions are true then. Nothing else is due before.
+    fn last_root(&mut self, first: f64, changed: &[(usize, f64)]) -> f64 {
+        let limit = self.next_cause().min(first + time_resolution(first));
+        changed.iter().map(|&(_, root)| root).filter(|&root| root <= limit).fold(first, f64::max)
     }
 
     /// The true side of the roots, or the near side if the flows are not defined on the true one (rule 3).
@@ -269,7 +314,7 @@ impl Engine<'_, '_> {
         self.guards.roused.push(index as u32);
         let state = &mut self.guards.atoms[index];
         // Across a jump the rate says nothing of how near zero g is.
-        let zero = if state.leap.is_some() { None } else { Zero::of_root(jet[1], time) };
+        let zero = if state.leap.is_some() { None } else { Zero::of_root(jet[1], (time - root).abs(), time) };
         let slack = if state.leap.is_some() { 0.0 } else { jet[1].abs() * self.event_tolerance(time) };
         self.guards.zeros.set(index, time, zero);
         self.recertify(index, root.max(time));

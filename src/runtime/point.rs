@@ -8,7 +8,7 @@ use crate::runtime::branches::{Point, own_columns, truth_of, width};
 use crate::runtime::engine::Engine;
 use crate::runtime::fold::{self, Folded};
 use crate::runtime::population::{ABSENT, Slots};
-use crate::runtime::present::{Boxes, Views, depth_read};
+use crate::runtime::present::{Boxes, Depth, Views, depth_read};
 use crate::runtime::solve::time_resolution;
 use crate::runtime::truth::{self, Side};
 
@@ -50,6 +50,25 @@ impl Engine<'_, '_> {
         let mut out = [Interval::WHOLE; 3];
         self.point_range(kernel, slots, folds, own, &mut out);
         out.map(width)
+    }
+
+    /// How well a comparison is known of agents that go on from before the instant: by its rate along the flows that led to it, over the
+    /// width to which its time is known (rule 3). Zero where nothing is known of that.
+    pub fn width_by_approach(&mut self, atom: &Atom, slots: &Slots) -> f64 {
+        let time = self.present.time;
+        let has_come = |&slot: &usize| self.approach.rates(slots[slot], time).is_some();
+        if !atom.folds.is_empty() || atom.jumps.is_some() || !atom.slots.iter().any(has_come) {
+            return 0.0;
+        }
+        self.present.make(&self.agents, slots, Depth::Accelerations);
+        let mut views = self.present.views(&self.agents, slots);
+        for (view, &agent) in views.iter_mut().zip(slots) {
+            view.rates = self.approach.rates(agent, time).unwrap_or(view.rates);
+        }
+        let mut jet = [0.0; 3];
+        self.program.kernel(atom.rates).eval(&views, time, &mut jet);
+        let width = jet[1].abs() * self.approach.width(time);
+        if width.is_finite() { width } else { 0.0 }
     }
 
     /// The outputs of a kernel with the present rows as intervals without width.

@@ -1,4 +1,5 @@
-//! Comparisons that are zero at the instant at hand: what is written from such a zero is zero again, as well as the root is known (rule 3).
+//! What is known of the instant at hand only as well as its time is: comparisons that are zero at it, and what is written from such a
+//! zero; states that came to it along a flow that ends there (rule 3).
 
 use rustc_hash::FxHashMap;
 
@@ -6,6 +7,11 @@ use crate::runtime::solve::{time_resolution, ulp};
 
 /// How well the time of a root is known, in units of its last place; the rounding of the states there included.
 const ROOT_ULPS: f64 = 64.0;
+
+/// How well the time of a root at `t` is known, s: roots that are no farther apart are not told apart. At most the resolution of time.
+pub fn root_width(t: f64) -> f64 {
+    (ROOT_ULPS * ulp(t)).min(time_resolution(t))
+}
 
 /// What is known of a comparison that is on its boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,15 +23,15 @@ pub struct Zero {
 }
 
 impl Zero {
-    /// Of a root at `t` with this rate. None if the rate says nothing.
-    pub fn of_root(rate: f64, t: f64) -> Option<Self> {
-        let width = rate.abs() * ROOT_ULPS * ulp(t);
+    /// Of a root with this rate, looked at `off` s away from it, at `t`. None if the rate says nothing.
+    pub fn of_root(rate: f64, off: f64, t: f64) -> Option<Self> {
+        let width = rate.abs() * (off + root_width(t));
         width.is_finite().then_some(Self { width, by_rates: false })
     }
 
     /// Its width, from that of a boundary: a rate times the resolution of time.
     pub fn width_of(slack: f64, t: f64) -> f64 {
-        slack * ROOT_ULPS * ulp(t) / time_resolution(t)
+        slack * root_width(t) / time_resolution(t)
     }
 }
 
@@ -60,5 +66,52 @@ impl Zeros {
     /// Forgets everything: comparisons have other numbers now.
     pub fn forget(&mut self) {
         self.known.clear();
+    }
+}
+
+/// How agents whose steps end at the instant at hand came to it: what goes on from there is known as well as its time is, by the rates
+/// along the flows that led there.
+#[derive(Debug, Default)]
+pub struct Approach {
+    at: f64,
+    /// How far the instant may be from the roots that made it, s.
+    off: f64,
+    /// By agent; none of one whose states have been written.
+    rates: FxHashMap<usize, Option<Vec<f64>>>,
+}
+
+impl Approach {
+    /// Begins an instant at `at`, that is up to `off` s away from its roots.
+    pub fn begin(&mut self, at: f64, off: f64) {
+        if self.at != at {
+            (self.at, self.off) = (at, 0.0);
+            self.rates.clear();
+        }
+        self.off = self.off.max(off);
+    }
+
+    /// Notes the rates along which an agent came to the instant at `at`, if nothing is known of that.
+    pub fn note(&mut self, agent: usize, at: f64, rates: impl FnOnce() -> Vec<f64>) {
+        self.begin(at, 0.0);
+        self.rates.entry(agent).or_insert_with(|| Some(rates()));
+    }
+
+    /// Notes that the states of an agent are given at `at`, not reached.
+    pub fn give(&mut self, agent: usize, at: f64) {
+        self.begin(at, 0.0);
+        self.rates.insert(agent, None);
+    }
+
+    /// The rates along which an agent came to the instant at `at`.
+    pub fn rates(&self, agent: usize, at: f64) -> Option<&[f64]> {
+        if self.at != at {
+            return None;
+        }
+        self.rates.get(&agent)?.as_deref()
+    }
+
+    /// How well the time of the instant at `at` is known, s.
+    pub fn width(&self, at: f64) -> f64 {
+        root_width(at) + if self.at == at { self.off } else { 0.0 }
     }
 }

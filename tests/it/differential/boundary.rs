@@ -17,10 +17,10 @@ enum Verdict {
     True,
     /// Moving in: true while it does.
     Enters,
-    /// Moving out: false until it has really been false, or its rate points into the true region.
+    /// Moving out, or staying and false at the boundary: false until it has really been false, or its rate points into the true region.
     Held,
-    /// Staying: this, while it stays.
-    Stays(bool),
+    /// Staying, and true at the boundary: true while it stays.
+    Stays,
 }
 
 /// The comparisons of one guard that are decided.
@@ -71,8 +71,8 @@ impl Boundary {
                 let verdict = match course(&scope, world, &literal, negated) {
                     Course::In if closed => Verdict::True,
                     Course::In => Verdict::Enters,
-                    Course::Out => Verdict::Held,
-                    Course::Along => Verdict::Stays(closed),
+                    Course::Along if closed => Verdict::Stays,
+                    Course::Along | Course::Out => Verdict::Held,
                 };
                 decided.push((literal, negated, verdict));
             }
@@ -87,9 +87,8 @@ impl Boundary {
                 return None;
             }
             let truth = match verdict {
-                Verdict::True => true,
+                Verdict::True | Verdict::Stays => true,
                 Verdict::Held | Verdict::Enters => course(scope, world, literal, *negated) == Course::In,
-                Verdict::Stays(truth) => *truth,
             };
             Some((literal.clone(), truth != *negated))
         };
@@ -119,7 +118,7 @@ impl Boundary {
             let near = is_near(&mut scope, literal, *negated);
             match verdict {
                 Verdict::True | Verdict::Enters => false,
-                Verdict::Stays(_) => near,
+                Verdict::Stays => near,
                 Verdict::Held => near && course(&scope, world, literal, *negated) != Course::In,
             }
         };

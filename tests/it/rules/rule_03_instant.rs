@@ -139,6 +139,21 @@ fn rule_03_what_is_true_at_its_boundary_when_it_is_armed_is_so_whatever_turns_it
 }
 
 #[test]
+fn rule_03_what_goes_on_from_a_root_is_known_as_well_as_its_time() {
+    // In the new mode nothing moves: `<=` is true on its boundary, `<` is not, on whichever side rounding has put x.
+    let run = simulate_by_both_forms(
+        "agent A(k: real) { state x = 0.2*k  discrete n: int = 0
+           initial mode Go { flow { x' = -0.1*k }  hit: when x <= 0 -> Stand }
+           mode Stand { flow { x' = 0 }  stay: when x <= 0 { n := n + 1 }  beyond: when x < 0 { n := 100 }
+                        short: when x > 0 { n := 100 } } }
+         system { a = A[12](k = 0.7 + 0.3*index) }  run { until 3 }",
+    );
+    for k in 0..12 {
+        near(run.value(&format!("a[{k}].n")), 1.0, 0.0);
+    }
+}
+
+#[test]
 fn rule_03_a_strict_comparison_that_moves_in_holds_beside_a_crossing() {
     let run = simulate_by_both_forms(
         "agent A { state x = -1, y = -1  discrete n: int = 0  flow { x' = 1  y' = 0 }

@@ -363,6 +363,69 @@ fn rule_04_agents_that_share_nothing_keep_their_instants_whatever_the_tolerance(
 }
 
 #[test]
+fn rule_04_of_two_who_watch_one_agent_neither_misses_what_the_other_answers() {
+    // their roots are found some ulps apart; what the answer of the first writes turns the flow of the one who is watched
+    let run = simulate_by_both_forms(
+        "agent Bee(mate: Cat) { state x, y
+           flow { x' = -1.177*sin(3.979*time - 0.378)  y' = 1.033*(mate.x - y) }
+           dive: after 0.271 { y := -0.649 } }
+         agent Cat(mate: Bee) { state x  discrete k: int = 2, c = 0.428
+           flow { x' = 1.13*(mate.x - x) }
+           see: when mate.y > -0.611*mate.x { k := 0  c := 0.5*mate.y + 0.791 }
+           near: when mate.x^2 + mate.x^2 <= 1.565 { k := 1 }
+           leap: when (c + 0.208)^2 < 0.678 { c := -0.879*c  x := -1.151 } }
+         system {
+           bees = Bee[1](x = 1.042, y = 1.255, mate = cats[1])
+           cats = Cat[2](x = if index == 0 then 0.311 else -0.143, mate = bees[0])
+         }
+         run { until 0.5  tolerance 1e-11 }",
+    );
+    let late: Vec<String> = run.log().into_iter().skip(5).collect();
+    assert_eq!(late, ["0 Cat.see cats[0]", "0 Cat.see cats[1]", "1 Cat.leap cats[0]", "1 Cat.leap cats[1]"]);
+    assert!(run.events[5..].iter().all(|event| event.time == run.events[5].time));
+}
+
+#[test]
+fn rule_04_roots_that_rounding_does_not_tell_apart_are_one_instant_and_all_are_true_in_it() {
+    // By rounding the roots lie at 2 - 4e-16 to 2 + 4e-16; nobody's root is the root of a negative number.
+    let run = simulate_by_both_forms(
+        "agent A(k: real) { state x = 1 - 0.2*k, y = 0  flow { x' = 0.1*k  y' = 0 }
+           hit: when x >= 1 { y := sqrt(x - 1) } }
+         system { a = A[12](k = 0.7 + 0.3*index) }  run { until 3 }",
+    );
+    assert_eq!(run.log(), (0..12).map(|k| format!("0 A.hit a[{k}]")).collect::<Vec<_>>());
+    assert!(run.events.iter().all(|event| event.time == run.events[0].time));
+}
+
+#[test]
+fn rule_04_roots_that_share_an_agent_are_one_instant_at_the_last_of_them() {
+    let run = simulate_by_both_forms(
+        "agent T { state s = 0  flow { s' = 1 } }
+         agent B(d: real) { discrete k: real = 1 + d, r: real = 0 }
+         interaction I(a: T, b: B) { hit: when a.s >= b.k { b.r := sqrt(a.s - b.k) } }
+         system { t = T()  b = B[3](d = 4e-13*index) }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 I.hit t b[0]", "0 I.hit t b[1]", "0 I.hit t b[2]"]);
+    for event in &run.events {
+        assert!((event.time - (1.0 + 8e-13)).abs() <= 1e-15, "{}", event.time);
+    }
+}
+
+#[test]
+fn rule_04_a_root_waits_for_its_scheduled_time_though_somebody_else_has_one_before() {
+    let run = simulate_by_both_forms(
+        "agent U { state x = -1 + 3e-13  flow { x' = 1 }  hit: when x >= 0 { } }
+         agent C { discrete k: int = 0  t: after 1 { k := 1 } }
+         agent B(c: C) { state x = -1 - 1e-13  discrete n: int = 0  flow { x' = 1 }
+           hit: when x >= 0 { n := 1 }
+           bad: when n == 1 and c.k == 0 { n := 2 } }
+         system { c = C()  b = B(c = c)  u = U() }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 U.hit u", "0 C.t c", "0 B.hit b"]);
+    assert_eq!([run.events[1].time, run.events[2].time], [1.0, 1.0]);
+}
+
+#[test]
 fn rule_04_destroying_whom_a_link_does_not_lead_to_is_no_write() {
     let run = simulate_by_both_forms(
         "agent A { link l: A  discrete n: int = 0

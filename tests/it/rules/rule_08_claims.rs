@@ -50,6 +50,31 @@ fn rule_08_on_the_boundary_it_is_false_only_if_the_flow_leads_out() {
 }
 
 #[test]
+fn rule_08_what_stops_on_the_boundary_of_an_invariant_is_on_it() {
+    // The new flow has no rate; by rounding some of them are on either side.
+    for (go, domain) in
+        [("when x <= 0", "x >= 0"), ("when x <= 0", "x <= 0"), ("after 2", "x >= 0"), ("after 2", "x <= 0")]
+    {
+        let run = simulate(&format!(
+            "agent A(k: real) {{ state x = 0.2*k
+               initial mode Go {{ flow {{ x' = -0.1*k }}  halt: {go} -> Stand }}
+               mode Stand {{ flow {{ x' = 0 }}  invariant {domain} }} }}
+             system {{ a = A[12](k = 0.7 + 0.3*index) }}  run {{ until 3 }}"
+        ));
+        assert_eq!(run.events.len(), 12, "{go}, {domain}");
+        near(run.time, 3.0, 0.0);
+    }
+    // What is written there is not.
+    let (run, _) = simulate_error(
+        "agent A { state x = 0.2
+           initial mode Go { flow { x' = -0.1 }  halt: when x <= 0 -> Stand { x := -1e-15 } }
+           mode Stand { flow { x' = 0 }  invariant x >= 0 } }
+         system { a = A() }  run { until 3 }",
+    );
+    near(run.time, 2.0, 1e-12);
+}
+
+#[test]
 fn rule_08_an_invariant_is_of_its_mode() {
     let run = simulate(
         "agent A { state x = 0
