@@ -14,8 +14,8 @@ use crate::runtime::fold;
 use crate::runtime::guards::Origin;
 use crate::runtime::lives::{Conceived, Doomed};
 use crate::runtime::mail::Message;
-use crate::runtime::population::{ABSENT, Slots};
-use crate::runtime::present::Depth;
+use crate::runtime::population::{ABSENT, Agents, Slots};
+use crate::runtime::present::{Depth, Present};
 use crate::runtime::route::{Move, reached, remember, route};
 use crate::runtime::truth;
 
@@ -298,7 +298,7 @@ impl Engine<'_, '_> {
         match write.target {
             Entry::State(k) => {
                 self.restart(write.agent, written);
-                self.approach.give(write.agent, self.present.time);
+                self.approach.give(write.agent, k, self.present.time);
                 self.agents.agents[write.agent].states[k] = write.value;
             }
             Entry::Aux(column) => {
@@ -356,8 +356,9 @@ impl Engine<'_, '_> {
             self.catch_up_with(agent);
             let number = self.agents.agents[agent].group;
             let group = &mut self.groups.groups[number];
+            let (agents, present) = (&self.agents, &mut self.present);
             for &member in &group.members {
-                self.approach.note(member, time, || self.agents.rates_before(member, time));
+                self.approach.note(member, time, || rates_before(agents, present, member));
             }
             if group.clock > time && group.clock < f64::INFINITY {
                 self.n_cuts += group.members.len() as u64;
@@ -508,6 +509,17 @@ fn dooms(steps: &[ActionStep], visit: &mut dyn FnMut(usize)) {
             | ActionStep::Create(_) => {}
         }
     }
+}
+
+/// The rates along which an agent that is not cold has come to the present instant; those of its flow if it has just begun a step.
+fn rates_before(agents: &Agents<'_>, present: &mut Present, agent: usize) -> Vec<f64> {
+    if agents.agents[agent].segment.start < present.time {
+        let mut rates = vec![0.0; agents.agents[agent].states.len()];
+        agents.rates_at(agent, present.time, &mut rates);
+        return rates;
+    }
+    present.make(agents, &[agent], Depth::Rates);
+    present.rates(agent).to_vec()
 }
 
 /// Calls `visit` with every change of mode in some actions.

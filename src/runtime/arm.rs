@@ -6,8 +6,9 @@ use smallvec::SmallVec;
 use crate::codegen::kernel::{AgentView, Kernel};
 use crate::codegen::program::{Atom, Relation, Slot, Trigger};
 use crate::runtime::act::Written;
+use crate::runtime::agenda::Due;
 use crate::runtime::atom_state::{AtomState, closed};
-use crate::runtime::engine::{Due, Engine};
+use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::fold::Folded;
 use crate::runtime::guards::{Origin, inside};
@@ -303,7 +304,7 @@ impl<'p> Engine<'p, '_> {
         state.settled = false;
         state.version += 1;
         let due = Due { time, number: index as u32, version: state.version };
-        self.queues.push_uncertified(due, self.window_end);
+        self.queues.uncertified.push(due);
     }
 
     /// Rule 3, "On the boundary": by the first of two rates that is not zero within rounding; none where neither decides.

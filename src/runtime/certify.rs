@@ -2,10 +2,11 @@
 use smallvec::SmallVec;
 
 use crate::codegen::program::{Atom, Relation};
+use crate::runtime::agenda::Due;
 use crate::runtime::atom_state::{AtomState, Leap, closed};
 use crate::runtime::branches::{Jumping, width};
 use crate::runtime::detect::AtomCurve;
-use crate::runtime::engine::{Due, Engine};
+use crate::runtime::engine::Engine;
 use crate::runtime::fold::{self, Folded};
 use crate::runtime::observe::WhyUndecided;
 use crate::runtime::population::{ABSENT, Slots};
@@ -27,12 +28,10 @@ const PARTS_MAX: usize = 512;
 impl Engine<'_, '_> {
     /// Certifies every atom up to the cover at least; without a cover, up to what happens next.
     pub fn certify_up_to(&mut self, cover: f64) {
-        while let Some(&due) = self.queues.uncertified.peek() {
-            // The loop ends the run; until then a search of many roots must not go on.
-            if due.time >= self.enough(cover) || self.interrupted() {
-                return;
-            }
-            self.queues.uncertified.pop();
+        // The loop ends the run; until then a search of many roots must not go on.
+        while !self.interrupted() {
+            let until = self.enough(cover).min(self.window_end);
+            let Some(due) = self.queues.uncertified.pop_before(until) else { return };
             if self.guards.atoms[due.number as usize].version == due.version {
                 self.certify(due.number as usize, false);
             }
@@ -56,8 +55,8 @@ impl Engine<'_, '_> {
     /// time counts as being there.
     pub fn certify_at(&mut self, cover: f64) {
         let mut due_here = Vec::new();
-        while let Some(due) = self.queues.uncertified.peek().copied().filter(|due| due.time <= cover) {
-            self.queues.uncertified.pop();
+        let until = cover.next_up().min(self.window_end);
+        while let Some(due) = self.queues.uncertified.pop_before(until) {
             if self.guards.atoms[due.number as usize].version == due.version {
                 due_here.push(due.number as usize);
             }
@@ -272,7 +271,7 @@ impl Engine<'_, '_> {
         state.version += 1;
         if until < self.time_end {
             let due = Due { time: until, number: index as u32, version: state.version };
-            self.queues.push_uncertified(due, self.window_end);
+            self.queues.uncertified.push(due);
         }
     }
 

@@ -317,7 +317,6 @@ impl<'p, 'o> Clocks<'p, 'o> {
     /// What certified detection has put down to be searched, or found: it is not asked here.
     fn forget_searches(&mut self) {
         self.engine.queues.uncertified.clear();
-        self.engine.queues.later.clear();
         self.engine.queues.flips.clear();
     }
 

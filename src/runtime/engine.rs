@@ -1,14 +1,16 @@
 //! The state of a run, and the queues that order it in time.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::sync::atomic::{self, AtomicBool};
+
+use rustc_hash::FxHashMap;
 
 use crate::base::{Diagnostic, Span};
 use crate::codegen::program::{Integrator, Program};
 use crate::codegen::trace::Compared;
 use crate::math::Interval;
 use crate::runtime::advance::Stepper;
+use crate::runtime::agenda::{self, Agenda, Due, Waiting};
 use crate::runtime::comparisons;
 use crate::runtime::crew::Crew;
 use crate::runtime::detect::CurveRows;
@@ -35,43 +37,15 @@ use crate::runtime::solve::{MethodName, Methods};
 use crate::runtime::verdicts::Monitors;
 use crate::runtime::zeros::Approach;
 
-/// A time at which something named by a number is due; void if the version is not that of the thing any more.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Due {
-    /// s.
-    pub time: f64,
-    /// An atom instance, a guard instance or a group.
-    pub number: u32,
-    /// See above.
-    pub version: u32,
-}
-
-impl Eq for Due {}
-impl PartialOrd for Due {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Due {
-    /// The earliest is the greatest, then the one with the lowest number.
-    fn cmp(&self, other: &Self) -> Ordering {
-        other
-            .time
-            .total_cmp(&self.time)
-            .then_with(|| other.number.cmp(&self.number))
-            .then_with(|| other.version.cmp(&self.version))
-    }
-}
-
 /// What is due when.
 #[derive(Clone, Debug, Default)]
 pub struct Queues {
-    /// Atom instances, at the end of their certified stretch, if that lies in the window at hand.
-    pub uncertified: BinaryHeap<Due>,
-    /// Those that are due beyond the window, in no order.
-    pub later: Vec<Due>,
+    /// Atom instances, at the end of their certified stretch.
+    pub uncertified: Agenda,
     /// Atom instances, at their next change.
     pub flips: BinaryHeap<Due>,
+    /// Those of them that wait for something later, by atom instance.
+    pub waiting: FxHashMap<u32, Waiting>,
     /// Guard instances with a delay or period; the version is their arming.
     pub schedules: BinaryHeap<Due>,
     /// Pairs whose hazard flows, at the end of what is known of it; void if their arming is another one.
@@ -83,35 +57,13 @@ pub struct Queues {
 }
 
 impl Queues {
-    /// Has an atom instance looked at when it is due, in the window that ends at `window_end` or in another.
-    #[inline]
-    pub fn push_uncertified(&mut self, due: Due, window_end: f64) {
-        if due.time < window_end {
-            self.uncertified.push(due);
-        } else {
-            self.later.push(due);
-        }
-    }
-
-    /// Takes out the atom instances that are due before `until`, by number.
-    pub fn take_uncertified(&mut self, until: f64, is_valid: impl Fn(&Due) -> bool) -> Vec<Due> {
-        self.later.extend(std::mem::take(&mut self.uncertified));
-        let mut due: Vec<Due> = self.later.extract_if(.., |due| due.time < until).collect();
-        due.retain(is_valid);
-        due.sort_unstable_by_key(|due| due.number);
-        due
-    }
-
     /// Atom instances have new numbers: by old number, `moved`.
     pub fn renumber_atoms(&mut self, moved: &[u32]) {
-        self.later.iter_mut().for_each(|due| due.number = moved[due.number as usize]);
-        self.later.retain(|due| due.number != u32::MAX);
-        for queue in [&mut self.uncertified, &mut self.flips] {
-            let mut all = std::mem::take(queue).into_vec();
-            all.iter_mut().for_each(|due| due.number = moved[due.number as usize]);
-            all.retain(|due| due.number != u32::MAX);
-            *queue = all.into();
-        }
+        self.uncertified.renumber(moved);
+        agenda::renumber(&mut self.flips, moved);
+        let waiting = std::mem::take(&mut self.waiting);
+        self.waiting = waiting.into_iter().map(|(number, root)| (moved[number as usize], root)).collect();
+        self.waiting.remove(&u32::MAX);
     }
 }
 
@@ -428,12 +380,9 @@ impl<'p, 'o> Engine<'p, 'o> {
     /// Takes void entries out of the queues that have become much longer than there are things to be due.
     pub fn compact_queues(&mut self) {
         let Self { queues, guards, groups, .. } = self;
-        compact(&mut queues.uncertified, guards.atoms.len(), |due| {
+        queues.uncertified.compact(4 * guards.atoms.len() + 1024, |due| {
             guards.atoms[due.number as usize].version == due.version
         });
-        if queues.later.len() > 4 * guards.atoms.len() + 1024 {
-            queues.later.retain(|due| guards.atoms[due.number as usize].version == due.version);
-        }
         compact(&mut queues.flips, guards.atoms.len(), |due| {
             guards.atoms[due.number as usize].version == due.version
         });

@@ -5,7 +5,8 @@
 //! when one of them is written: before that, the hazard is taken away up to the instant.
 
 use crate::codegen::program::{FunctionId, Slot, TransitionSystem, Trigger};
-use crate::runtime::engine::{Due, Engine};
+use crate::runtime::agenda::Due;
+use crate::runtime::engine::Engine;
 use crate::runtime::exposed::Exposure;
 use crate::runtime::failure::Failure;
 use crate::runtime::guards::Origin;

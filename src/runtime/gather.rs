@@ -1,10 +1,11 @@
 //! What makes one instant (rule 4): the roots and scheduled times that are due together, and who fires by them.
 //!
-//! Roots that rounding does not tell apart are one instant, and so are roots within the resolution of time after them that share an
-//! agent with them: at the last of them. Scheduled times are never moved: a root near one joins it.
+//! All that is due at exactly the same time is one instant; roots within the resolution of time wait for the last of them if they share an
+//! agent, or watch the same and rounding does not tell them apart. Scheduled times are never moved: a root near one joins it.
 use crate::codegen::program::{Relation, Trigger};
+use crate::runtime::agenda::{Due, Waiting};
 use crate::runtime::detect::AtomCurve;
-use crate::runtime::engine::{Due, Engine};
+use crate::runtime::engine::Engine;
 use crate::runtime::failure::Failure;
 use crate::runtime::guards::Origin;
 use crate::runtime::instant::{By, Candidate};
@@ -57,51 +58,39 @@ impl Engine<'_, '_> {
             // Something earlier may not have been found yet.
             return Ok(());
         }
-        let flips = self.pop_flips(window);
+        let mut flips = self.pop_flips(window);
         let (now, later): (Vec<Due>, Vec<Due>) =
             self.pop_schedules(window).into_iter().partition(|due| due.time == first);
         let arrived = self.mail.arrive(first);
-        let arriving = self.mail.arriving(first, window);
-        let is_scheduled = !now.is_empty() || !arrived.is_empty();
-        // Roots that rounding does not tell apart are one; a scheduled time is exact.
-        let until = if is_scheduled { first } else { (first + root_width(first)).min(window) };
         let instance = |due: &Due| self.guards.atoms[due.number as usize].instance;
         let causes: Vec<u32> = flips
             .iter()
-            .filter(|due| due.time <= until)
+            .filter(|due| due.time == first)
             .map(instance)
             .chain(now.iter().map(|due| due.number))
             .chain(arrived.iter().flat_map(|message| self.listening(message)))
             .collect();
-        let is_alone = later.is_empty() && arriving.is_empty() && flips.iter().all(|due| due.time <= until);
-        let circle = if is_alone { Circle::default() } else { self.circle(&causes) };
-        let next_scheduled = later
-            .iter()
-            .map(|due| (due.time, vec![due.number]))
-            .chain(arriving.iter().map(|(time, message)| (*time, self.listening(message))))
-            .filter(|(time, who)| {
-                *time <= until || who.iter().any(|&instance| self.shares(&circle, instance))
-            })
-            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let waits = now.is_empty() && arrived.is_empty() && self.wait(first, &causes, &mut flips, &later);
         self.queues.schedules.extend(later);
-        if let Some((time, who)) = next_scheduled.filter(|_| !is_scheduled) {
-            self.postpone(flips, until, time, &who);
+        if waits {
+            self.queues.flips.extend(flips);
             return Ok(());
         }
+        let instance = |due: &Due| self.guards.atoms[due.number as usize].instance;
+        let is_alone = flips.iter().all(|due| due.time == first);
+        let circle = if is_alone { Circle::default() } else { self.circle(&causes) };
         let (joined, others): (Vec<Due>, Vec<Due>) =
-            flips.into_iter().partition(|due| due.time <= until || self.shares(&circle, instance(due)));
+            flips.into_iter().partition(|due| due.time == first || self.shares(&circle, instance(due)));
         self.queues.flips.extend(others);
         let near = joined.iter().map(|due| self.guards.atoms[due.number as usize].near).fold(first, f64::min);
         let changed: Vec<(usize, f64)> = joined.iter().map(|due| (due.number as usize, due.time)).collect();
         let mut time = first;
-        if !is_scheduled {
-            time = self.last_root(first, &changed);
+        if now.is_empty() && arrived.is_empty() {
             time = self.defined_side(time, near, &changed);
             time = self.after_turns(time, &changed);
         }
         self.present.go(time);
-        let off = changed.iter().map(|&(_, root)| (time - root).abs()).fold(0.0, f64::max);
-        self.approach.begin(time, off);
+        self.approach.begin(time);
         let mut concerned: Vec<u32> = Vec::new();
         let mut refold: Vec<u32> = Vec::new();
         let mut at_once: Vec<usize> = Vec::new();
@@ -128,7 +117,7 @@ impl Engine<'_, '_> {
         let now = self.pop_schedules(time);
         self.mail.arrive(time);
         self.present.go(time);
-        self.approach.begin(time, 0.0);
+        self.approach.begin(time);
         let mut concerned: Vec<u32> = Vec::new();
         for &index in zeros {
             self.guards.atoms[index].leap = None;
@@ -180,20 +169,57 @@ impl Engine<'_, '_> {
         Ok(())
     }
 
-    /// Roots near a scheduled time join it, if their transitions share an agent with those that wait for it or rounding does not tell
-    /// their times apart: they wait until then.
-    fn postpone(&mut self, flips: Vec<Due>, until: f64, scheduled: f64, who: &[u32]) {
-        let circle = self.circle(who);
-        for mut due in flips {
-            let state = &self.guards.atoms[due.number as usize];
-            if due.time <= until.min(scheduled)
-                && (scheduled <= until || self.shares(&circle, state.instance))
-            {
-                due.time = scheduled;
-                self.guards.atoms[due.number as usize].flip = scheduled;
-            }
-            self.queues.flips.push(due);
+    /// Has roots wait that are to be one instant with something later (rule 4): with a scheduled time, or with the last root of those that share
+    /// an agent, when all of their conditions are true. Whether any does. `flips` and `schedules` are all that are due within the tolerance
+    /// of events from `first` on, `causes` whose roots are first.
+    fn wait(&mut self, first: f64, causes: &[u32], flips: &mut [Due], schedules: &[Due]) -> bool {
+        let own_time =
+            |due: &Due| self.queues.waiting.get(&due.number).map_or(due.time, |waiting| waiting.since);
+        let seeds = flips.iter().filter(|due| due.time == first);
+        let since = seeds.map(own_time).fold(first, f64::min);
+        let (tolerance, width) = (self.event_tolerance(first), root_width(first));
+        let arriving = self.mail.arriving(first, since + tolerance);
+        if schedules.is_empty() && arriving.is_empty() && flips.iter().all(|due| due.time == first) {
+            return false;
         }
+        let circle = self.circle(causes);
+        let scheduled = schedules
+            .iter()
+            .filter(|due| due.time <= since + tolerance)
+            .map(|due| (due.time, vec![due.number]))
+            .chain(arriving.iter().map(|(time, message)| (*time, self.listening(message))))
+            .filter(|(_, who)| who.iter().any(|&instance| self.shares(&circle, instance)))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let (until, who) = scheduled.unwrap_or_else(|| {
+            let resolution = time_resolution(first);
+            let later = flips.iter().filter(|due| due.time > first && due.time <= since + resolution);
+            let joining = later
+                .map(|due| (due.time, self.guards.atoms[due.number as usize].instance))
+                .filter(|&(_, instance)| self.guards.definition(instance).origin.transition().is_some())
+                .filter(|&(time, instance)| self.joins(&circle, instance, time - first <= width));
+            let (times, who): (Vec<f64>, Vec<u32>) = joining.unzip();
+            (times.into_iter().fold(first, f64::max), who)
+        });
+        if who.is_empty() {
+            return false;
+        }
+        // Whoever shares with them waits, too, and so do claims about them.
+        let circle = self.circle(&who);
+        let are_near = until - first <= width;
+        let near = causes.iter().copied().filter(|&cause| self.joins(&circle, cause, are_near));
+        let circle = self.circle(&near.chain(who.iter().copied()).collect::<Vec<u32>>());
+        let atoms = &self.guards.atoms;
+        self.queues.waiting.retain(|&number, waiting| atoms[number as usize].version == waiting.version);
+        for due in flips.iter_mut().filter(|due| due.time < until) {
+            let index = due.number as usize;
+            if self.joins(&circle, self.guards.atoms[index].instance, are_near) {
+                let root = Waiting { since: due.time, version: due.version };
+                self.queues.waiting.entry(due.number).or_insert(root);
+                due.time = until;
+                self.guards.atoms[index].flip = until;
+            }
+        }
+        true
     }
 
     fn pop_flips(&mut self, window: f64) -> Vec<Due> {
@@ -255,10 +281,12 @@ impl Engine<'_, '_> {
             || definition.quantified.iter().any(|&ty| has(&circle.written_types, ty))
     }
 
-    /// The last of the roots that make one instant at `first`: all of their conditions are true then. Nothing else is due before.
-    fn last_root(&mut self, first: f64, changed: &[(usize, f64)]) -> f64 {
-        let limit = self.next_cause().min(first + time_resolution(first));
-        changed.iter().map(|&(_, root)| root).filter(|&root| root <= limit).fold(first, f64::max)
+    /// Whether the root of an instance is to be one instant with those of others: if they share an agent, or watch the same and the
+    /// roots `are_near`, so that rounding does not tell them apart.
+    fn joins(&self, circle: &Circle, instance: u32, are_near: bool) -> bool {
+        let is_watched = |&agent: &usize| circle.read.binary_search(&agent).is_ok();
+        self.shares(circle, instance)
+            || are_near && self.guards.slots(&self.agents, instance).iter().any(is_watched)
     }
 
     /// The true side of the roots, or the near side if the flows are not defined on the true one (rule 3).
@@ -299,6 +327,9 @@ impl Engine<'_, '_> {
     fn flip(&mut self, index: usize, root: f64) {
         let (atom, slots) = self.guards.atom_slots(&self.agents, index);
         let time = self.present.time;
+        let waiting = self.queues.waiting.remove(&(index as u32));
+        let waiting = waiting.filter(|waiting| waiting.version == self.guards.atoms[index].version);
+        let since = waiting.map_or(root, |waiting| waiting.since);
         let kernel = self.program.kernel(atom.value);
         let folds = self.truths().gather(self.guards.atoms[index].instance, kernel, &slots, Side::After);
         let jet = { AtomCurve::new(&self.agents, atom, &slots, &folds, &mut self.curves).jet(time) };
@@ -314,7 +345,8 @@ impl Engine<'_, '_> {
         self.guards.roused.push(index as u32);
         let state = &mut self.guards.atoms[index];
         // Across a jump the rate says nothing of how near zero g is.
-        let zero = if state.leap.is_some() { None } else { Zero::of_root(jet[1], (time - root).abs(), time) };
+        let zero =
+            if state.leap.is_some() { None } else { Zero::of_root(jet[1], (time - since).abs(), time) };
         let slack = if state.leap.is_some() { 0.0 } else { jet[1].abs() * self.event_tolerance(time) };
         self.guards.zeros.set(index, time, zero);
         self.recertify(index, root.max(time));

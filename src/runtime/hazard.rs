@@ -10,8 +10,9 @@
 use crate::codegen::program::{Distribution, Entry, TransitionSystem, Trigger};
 use crate::math::draw::Key;
 use crate::runtime::act::{Effect, Write, Written};
+use crate::runtime::agenda::Due;
 use crate::runtime::arm::Rule;
-use crate::runtime::engine::{Due, Engine};
+use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::guards::Origin;
 use crate::runtime::population::Slots;

@@ -2,7 +2,8 @@
 //! the plain form; all others are cold.
 
 use crate::math::Interval;
-use crate::runtime::engine::{Due, Engine};
+use crate::runtime::agenda::Due;
+use crate::runtime::engine::Engine;
 use crate::runtime::leap::Covering;
 use crate::runtime::population::ABSENT;
 
@@ -126,8 +127,9 @@ impl Engine<'_, '_> {
     /// Has comparisons sleep beyond `until`; returns those that do not.
     fn look_ahead(&mut self, until: f64) -> Vec<Due> {
         let Self { queues, guards, .. } = self;
-        let is_valid = |due: &Due| guards.atoms[due.number as usize].version == due.version;
-        let mut due = queues.take_uncertified(until, is_valid);
+        let mut due = queues.uncertified.take_before(until);
+        due.retain(|due| guards.atoms[due.number as usize].version == due.version);
+        due.sort_unstable_by_key(|due| due.number);
         due.retain(|due| !self.sleep_beyond(due.number as usize, until));
         due
     }

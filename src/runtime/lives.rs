@@ -321,7 +321,7 @@ impl Engine<'_, '_> {
     /// Everything that is kept for each place.
     fn make_rows(&mut self, place: usize, n_states: usize) {
         self.present.admit(place);
-        self.approach.give(place, self.present.time);
+        self.approach.note(place, self.present.time, || vec![0.0; n_states]);
         self.notes.iter_mut().for_each(|notes| notes.aside.admit(place));
         self.reaches.admit(place, n_states);
         self.stepper.forget(place);

@@ -8,8 +8,9 @@ use crate::base::Span;
 use crate::codegen::program::Kink;
 use crate::runtime::act::Written;
 use crate::runtime::advance::{Advance, Obstacle};
+use crate::runtime::agenda::Due;
 use crate::runtime::certify::{ENDLESS, may_touch};
-use crate::runtime::engine::{Due, Engine};
+use crate::runtime::engine::Engine;
 use crate::runtime::failure::{Failure, Reason};
 use crate::runtime::groups::KinkHit;
 use crate::runtime::guards::Origin;
@@ -123,7 +124,7 @@ impl Engine<'_, '_> {
 
     /// Up to when nothing happens that has not been carried out, s; not beyond the cover.
     fn known_until(&mut self, cover: f64) -> f64 {
-        let certified = self.queues.uncertified.peek().map_or(f64::INFINITY, |due| due.time);
+        let certified = self.queues.uncertified.from();
         let exposed = self.queues.exposed.peek().map_or(f64::INFINITY, |due| due.time);
         cover.min(certified).min(exposed).min(self.next_cause()).max(self.present.time)
     }

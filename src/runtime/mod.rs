@@ -42,6 +42,7 @@ pub mod paper;
 pub mod observe;
 mod leap;
 mod tracks;
+mod agenda;
 mod crew;
 mod stretch;
 mod herd;

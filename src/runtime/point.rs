@@ -53,7 +53,7 @@ impl Engine<'_, '_> {
     }
 
     /// How well a comparison is known of agents that go on from before the instant: by its rate along the flows that led to it, over the
-    /// width to which its time is known (rule 3). Zero where nothing is known of that.
+    /// width to which roots are isolated (rule 3). Zero where nothing is known of that.
     pub fn width_by_approach(&mut self, atom: &Atom, slots: &Slots) -> f64 {
         let time = self.present.time;
         let has_come = |&slot: &usize| self.approach.rates(slots[slot], time).is_some();
@@ -67,7 +67,7 @@ impl Engine<'_, '_> {
         }
         let mut jet = [0.0; 3];
         self.program.kernel(atom.rates).eval(&views, time, &mut jet);
-        let width = jet[1].abs() * self.approach.width(time);
+        let width = jet[1].abs() * time_resolution(time);
         if width.is_finite() { width } else { 0.0 }
     }
 

@@ -215,15 +215,6 @@ impl<'p> Agents<'p> {
         self.agents[number].way(t).jet(t, &mut x, rates, &mut ddx);
     }
 
-    /// The same at the end of what is kept of its way, or within it; zero of one that has not gone any way.
-    pub fn rates_before(&self, number: usize, t: f64) -> Vec<f64> {
-        let mut rates = vec![0.0; self.agents[number].states.len()];
-        if self.agents[number].segment.start < t {
-            self.rates_at(number, t, &mut rates);
-        }
-        rates
-    }
-
     /// Up to when the way of an agent that is not cold is known, s.
     pub fn known_until(&self, agent: usize) -> f64 {
         let agent = &self.agents[agent];

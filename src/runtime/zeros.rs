@@ -23,7 +23,7 @@ pub struct Zero {
 }
 
 impl Zero {
-    /// Of a root with this rate, looked at `off` s away from it, at `t`. None if the rate says nothing.
+    /// Of a root with this rate, looked at `t`, which is up to `off` s away from it. None if the rate says nothing.
     pub fn of_root(rate: f64, off: f64, t: f64) -> Option<Self> {
         let width = rate.abs() * (off + root_width(t));
         width.is_finite().then_some(Self { width, by_rates: false })
@@ -69,49 +69,40 @@ impl Zeros {
     }
 }
 
-/// How agents whose steps end at the instant at hand came to it: what goes on from there is known as well as its time is, by the rates
-/// along the flows that led there.
+/// How agents came to the instant at hand: what goes on from there is known as well as its time is, by the rates along the flows that
+/// led there.
 #[derive(Debug, Default)]
 pub struct Approach {
     at: f64,
-    /// How far the instant may be from the roots that made it, s.
-    off: f64,
-    /// By agent; none of one whose states have been written.
-    rates: FxHashMap<usize, Option<Vec<f64>>>,
+    /// By agent whose flow ends here: its rates before, zero of what has been written.
+    rates: FxHashMap<usize, Vec<f64>>,
 }
 
 impl Approach {
-    /// Begins an instant at `at`, that is up to `off` s away from its roots.
-    pub fn begin(&mut self, at: f64, off: f64) {
+    /// Begins an instant at `at`.
+    pub fn begin(&mut self, at: f64) {
         if self.at != at {
-            (self.at, self.off) = (at, 0.0);
+            self.at = at;
             self.rates.clear();
         }
-        self.off = self.off.max(off);
     }
 
     /// Notes the rates along which an agent came to the instant at `at`, if nothing is known of that.
     pub fn note(&mut self, agent: usize, at: f64, rates: impl FnOnce() -> Vec<f64>) {
-        self.begin(at, 0.0);
-        self.rates.entry(agent).or_insert_with(|| Some(rates()));
+        self.begin(at);
+        self.rates.entry(agent).or_insert_with(rates);
     }
 
-    /// Notes that the states of an agent are given at `at`, not reached.
-    pub fn give(&mut self, agent: usize, at: f64) {
-        self.begin(at, 0.0);
-        self.rates.insert(agent, None);
+    /// Notes that a state of an agent is given at `at`, not reached.
+    pub fn give(&mut self, agent: usize, state: usize, at: f64) {
+        self.begin(at);
+        if let Some(rates) = self.rates.get_mut(&agent) {
+            rates[state] = 0.0;
+        }
     }
 
     /// The rates along which an agent came to the instant at `at`.
     pub fn rates(&self, agent: usize, at: f64) -> Option<&[f64]> {
-        if self.at != at {
-            return None;
-        }
-        self.rates.get(&agent)?.as_deref()
-    }
-
-    /// How well the time of the instant at `at` is known, s.
-    pub fn width(&self, at: f64) -> f64 {
-        root_width(at) + if self.at == at { self.off } else { 0.0 }
+        if self.at == at { self.rates.get(&agent).map(Vec::as_slice) } else { None }
     }
 }

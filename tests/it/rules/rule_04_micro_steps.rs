@@ -386,15 +386,16 @@ fn rule_04_of_two_who_watch_one_agent_neither_misses_what_the_other_answers() {
 }
 
 #[test]
-fn rule_04_roots_that_rounding_does_not_tell_apart_are_one_instant_and_all_are_true_in_it() {
-    // By rounding the roots lie at 2 - 4e-16 to 2 + 4e-16; nobody's root is the root of a negative number.
+fn rule_04_who_shares_nothing_keeps_his_time_and_no_claim_moves_an_event() {
+    // Somebody else is some ulps later at each turn; an assert of its own, 5e-13 s.
     let run = simulate_by_both_forms(
-        "agent A(k: real) { state x = 1 - 0.2*k, y = 0  flow { x' = 0.1*k  y' = 0 }
-           hit: when x >= 1 { y := sqrt(x - 1) } }
-         system { a = A[12](k = 0.7 + 0.3*index) }  run { until 3 }",
+        "agent B(e: real) { state x = 0  flow { x' = 1 }  assert x <= 1 + 5e-13
+           go: when x >= 1 + e { x := 0 } }
+         system { b = B(e = 0)  c = B(e = 2e-15) }  run { until 5 }",
     );
-    assert_eq!(run.log(), (0..12).map(|k| format!("0 A.hit a[{k}]")).collect::<Vec<_>>());
-    assert!(run.events.iter().all(|event| event.time == run.events[0].time));
+    let times: Vec<f64> =
+        run.events.iter().filter(|event| event.agent == "b").map(|event| event.time).collect();
+    assert_eq!(times, [1.0, 2.0, 3.0, 4.0, 5.0]);
 }
 
 #[test]
@@ -409,6 +410,21 @@ fn rule_04_roots_that_share_an_agent_are_one_instant_at_the_last_of_them() {
     for event in &run.events {
         assert!((event.time - (1.0 + 8e-13)).abs() <= 1e-15, "{}", event.time);
     }
+}
+
+#[test]
+fn rule_04_a_root_that_waits_for_another_waits_for_its_scheduled_time_with_it() {
+    let run = simulate_by_both_forms(
+        "agent S { discrete seen: int = -1  link c: C  due: after 1 { seen := if c then c.n else -5 } }
+         agent C { state x = 0  discrete n: int = 0  link s: S  flow { x' = 1 }
+           hit: when x >= 1 and (if s then s.seen else 0) < 5 { n := n + 1 } }
+         agent A { state y = 0  discrete k: int = 0  link c: C  flow { y' = 1 }
+           hit: when y >= 1 - 5e-13 { k := k + 1 + (if c then c.n else 0) } }
+         system { a = A(c = c)  c = C(s = s)  s = S(c = c) }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 S.due s", "0 C.hit c", "0 A.hit a"]);
+    assert!(run.events.iter().all(|event| event.time == 1.0));
+    assert_eq!([run.value("s.seen"), run.value("a.k")], [0.0, 1.0]);
 }
 
 #[test]

@@ -64,6 +64,39 @@ fn rule_08_what_stops_on_the_boundary_of_an_invariant_is_on_it() {
         assert_eq!(run.events.len(), 12, "{go}, {domain}");
         near(run.time, 3.0, 0.0);
     }
+    // Whatever else is written, at a kink of the flow, and where the root waits for a schedule.
+    let more = [
+        (
+            "state x = 1/k, v = -k",
+            "flow { x' = v  v' = 0 }",
+            "-> Stand { v := 0 }",
+            "flow { x' = v  v' = 0 }",
+        ),
+        ("state x = 1/k", "flow { x' = -k - 0.3*abs(x) }", "-> Stand", "flow { x' = 0 }"),
+        (
+            "state x = 1/k, y = 0",
+            "flow { x' = -k  y' = 1 }",
+            "-> Stand { y := 0 }",
+            "flow { x' = 0  y' = x }",
+        ),
+    ];
+    for (states, flow, go, rest) in more {
+        let run = simulate(&format!(
+            "agent A(k: real) {{ {states}
+               initial mode Go {{ {flow}  halt: when x <= 0 {go} }}
+               mode Stand {{ {rest}  invariant x >= 0 }} }}
+             system {{ a = A[40](k = 0.37 + 0.013*index) }}  run {{ until 10 }}"
+        ));
+        assert_eq!((run.events.len(), run.time), (40, 10.0), "{states}");
+    }
+    let run = simulate(
+        "agent A { state x = 1  discrete n: int = 0
+           initial mode Go { flow { x' = -1 }  halt: when x <= 0 -> Stand { n := 1 } }
+           mode Stand { flow { x' = 0 }  invariant x >= 0 } }
+         agent S(a: A) { discrete m: int = 0  t: after 1 + 6e-13 { m := a.n } }
+         system { a = A()  s = S(a = a) }  run { until 3 }",
+    );
+    assert_eq!(run.log(), ["0 S.t s", "0 A.halt a Go->Stand"]);
     // What is written there is not.
     let (run, _) = simulate_error(
         "agent A { state x = 0.2
