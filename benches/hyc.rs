@@ -275,11 +275,10 @@ fn back_ends() {
     );
 }
 
-/// One model at several sizes, in the fast form, and up to `plain_max` in the plain one, which lists all pairs.
-fn sizes(name: &str, sizes: &[usize], plain_max: usize, program: impl Fn(usize) -> Program) {
+/// One model at several sizes, counted in `unit`, in the fast form, and up to `plain_max` in the plain one, which lists all pairs.
+fn sizes(model: &str, unit: &str, sizes: &[usize], plain_max: usize, program: impl Fn(usize) -> Program) {
     println!(
-        "\n| {name} | compile (ms) | run (ms) | steps | events | run / {} (us) | plain form, run (ms) |",
-        name.split(' ').next_back().unwrap_or(name)
+        "\n| {model}: {unit} | compile (ms) | run (ms) | steps | events | run / {unit} (us) | plain form, run (ms) |"
     );
     println!("|---|---|---|---|---|---|---|");
     for &n in sizes {
@@ -306,8 +305,8 @@ fn main() {
     back_ends();
     series(&bumper(20, Backend::Jit));
     let cars = [2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 20_000];
-    sizes("bumper: N", &cars, 500, |n| bumper(n, Backend::Jit));
-    sizes("swarm: n", &[27, 200, 1000, 10_000], 200, swarm);
-    sizes("highway: lanes", &[8, 80, 800], 8, highway);
+    sizes("bumper", "N", &cars, 500, |n| bumper(n, Backend::Jit));
+    sizes("swarm", "n", &[27, 200, 1000, 10_000], 200, swarm);
+    sizes("highway", "lanes", &[8, 80, 800], 8, highway);
     lanes::table();
 }

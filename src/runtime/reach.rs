@@ -122,16 +122,12 @@ impl Reaches {
             self.kept[agent].pure = false;
             out.resize(n, Interval::WHOLE);
         }
-        let Known { since, passed } = known(agents, groups, agent, from);
-        let mut fill = |state: usize, bound: Interval| {
-            if out[state].is_whole() {
-                out[state] = passed.get(state).map_or(bound, |passed| passed.hull(bound));
-            }
-        };
-        if !passed.is_empty() && to <= since {
-            passed.iter().enumerate().for_each(|(state, &bound)| fill(state, bound));
+        let known = known(agents, groups, agent, from);
+        if !known.passed.is_empty() && to <= known.since {
+            known.passed.iter().enumerate().for_each(|(state, &bound)| known.fill(out, state, bound));
         } else {
-            enclosures.states(agents, groups, agent, (since, to), &mut fill);
+            let fill = &mut |state, bound| known.fill(out, state, bound);
+            enclosures.states(agents, groups, agent, (known.since, to), fill);
         }
     }
 
@@ -146,13 +142,10 @@ impl Reaches {
         out: &mut SmallVec<[Interval; 8]>,
     ) {
         self.states(agents, groups, enclosures, agent, (from, to), out);
-        let Known { since, passed } = known(agents, groups, agent, from);
-        if to > since && out.iter().any(|bound| bound.is_whole()) {
-            enclosures.states_in_pieces(agents, groups, agent, (since, to), &mut |state, bound| {
-                if out[state].is_whole() {
-                    out[state] = passed.get(state).map_or(bound, |passed| passed.hull(bound));
-                }
-            });
+        let known = known(agents, groups, agent, from);
+        if to > known.since && out.iter().any(|bound| bound.is_whole()) {
+            let fill = &mut |state, bound| known.fill(out, state, bound);
+            enclosures.states_in_pieces(agents, groups, agent, (known.since, to), fill);
         }
     }
 
@@ -250,6 +243,15 @@ struct Known<'a> {
     since: f64,
     /// Of one that runs ahead: where it was until then.
     passed: &'a [Interval],
+}
+
+impl Known<'_> {
+    /// Fills in a bound of a state from `since` on, where none is known: with where it has passed.
+    fn fill(&self, out: &mut [Interval], state: usize, bound: Interval) {
+        if out[state].is_whole() {
+            out[state] = self.passed.get(state).map_or(bound, |passed| passed.hull(bound));
+        }
+    }
 }
 
 fn known<'a>(agents: &'a Agents<'_>, groups: &[Group], agent: usize, from: f64) -> Known<'a> {
