@@ -1,7 +1,7 @@
 //! Zeno behaviour and chattering: one transition instance, or one kink, again and again while time stands still.
 //!
-//! It is found when `zeno_events` firings of one instance fall into an interval of as many times the resolution of
-//! time: no spacing of theirs can be told from zero. The limit time is estimated from the last two spacings that
+//! It is found when `zeno_events` firings of one instance fall into an interval of four times as many times the resolution of
+//! time: no spacing of theirs can be told from zero, or all are where a search goes on beyond what comes within rounding of its boundary. The limit time is estimated from the last two spacings that
 //! could be resolved, d and d q: t + d q / (1 - q).
 
 use rustc_hash::FxHashMap;
@@ -65,6 +65,8 @@ pub struct Repetitions {
     pub instant: u64,
 }
 
+/// No spacing below this can be told from zero, in units of the resolution of time.
+const APART: f64 = 4.0;
 /// How many of the last firings are remembered to name a cycle.
 const RECENT: usize = 64;
 
@@ -141,7 +143,7 @@ fn count(track: &mut Track, t: f64, limit: u32) -> Finding {
         track.gaps = [track.gaps[1], gap];
         track.resolved = t;
     }
-    if t - track.since > f64::from(limit) * resolution {
+    if t - track.since > f64::from(limit) * APART * resolution {
         track.since = t;
         track.count = 1;
         return Finding::Fine;
