@@ -71,6 +71,7 @@ impl Agenda {
     /// Puts something down.
     #[inline]
     pub fn push(&mut self, due: Due) {
+        debug_assert!(!due.time.is_nan());
         if due.time < self.horizon {
             self.soon.push(due);
         } else {

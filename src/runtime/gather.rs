@@ -79,8 +79,10 @@ impl Engine<'_, '_> {
         let instance = |due: &Due| self.guards.atoms[due.number as usize].instance;
         let is_alone = flips.iter().all(|due| due.time == first);
         let circle = if is_alone { Circle::default() } else { self.circle(&causes) };
-        let (joined, others): (Vec<Due>, Vec<Due>) =
-            flips.into_iter().partition(|due| due.time == first || self.shares(&circle, instance(due)));
+        let window = self.since(first, &flips) + self.event_tolerance(first);
+        let (joined, others): (Vec<Due>, Vec<Due>) = flips
+            .into_iter()
+            .partition(|due| due.time == first || due.time <= window && self.shares(&circle, instance(due)));
         self.queues.flips.extend(others);
         let near = joined.iter().map(|due| self.guards.atoms[due.number as usize].near).fold(first, f64::min);
         let changed: Vec<(usize, f64)> = joined.iter().map(|due| (due.number as usize, due.time)).collect();
@@ -173,21 +175,19 @@ impl Engine<'_, '_> {
     /// an agent, when all of their conditions are true. Whether any does. `flips` and `schedules` are all that are due within the tolerance
     /// of events from `first` on, `causes` whose roots are first.
     fn wait(&mut self, first: f64, causes: &[u32], flips: &mut [Due], schedules: &[Due]) -> bool {
-        let own_time =
-            |due: &Due| self.queues.waiting.get(&due.number).map_or(due.time, |waiting| waiting.since);
-        let seeds = flips.iter().filter(|due| due.time == first);
-        let since = seeds.map(own_time).fold(first, f64::min);
+        let since = self.since(first, flips);
         let (tolerance, width) = (self.event_tolerance(first), root_width(first));
         let arriving = self.mail.arriving(first, since + tolerance);
         if schedules.is_empty() && arriving.is_empty() && flips.iter().all(|due| due.time == first) {
             return false;
         }
         let circle = self.circle(causes);
+        // What comes after the end comes never.
         let scheduled = schedules
             .iter()
-            .filter(|due| due.time <= since + tolerance)
             .map(|due| (due.time, vec![due.number]))
             .chain(arriving.iter().map(|(time, message)| (*time, self.listening(message))))
+            .filter(|(time, _)| *time <= (since + tolerance).min(self.time_end))
             .filter(|(_, who)| who.iter().any(|&instance| self.shares(&circle, instance)))
             .min_by(|a, b| a.0.total_cmp(&b.0));
         let (until, who) = scheduled.unwrap_or_else(|| {
@@ -195,7 +195,7 @@ impl Engine<'_, '_> {
             let later = flips.iter().filter(|due| due.time > first && due.time <= since + resolution);
             let joining = later
                 .map(|due| (due.time, self.guards.atoms[due.number as usize].instance))
-                .filter(|&(_, instance)| self.guards.definition(instance).origin.transition().is_some())
+                .filter(|&(_, instance)| self.is_of_transition(instance))
                 .filter(|&(time, instance)| self.joins(&circle, instance, time - first <= width));
             let (times, who): (Vec<f64>, Vec<u32>) = joining.unzip();
             (times.into_iter().fold(first, f64::max), who)
@@ -210,16 +210,38 @@ impl Engine<'_, '_> {
         let circle = self.circle(&near.chain(who.iter().copied()).collect::<Vec<u32>>());
         let atoms = &self.guards.atoms;
         self.queues.waiting.retain(|&number, waiting| atoms[number as usize].version == waiting.version);
+        let mut waits = false;
         for due in flips.iter_mut().filter(|due| due.time < until) {
             let index = due.number as usize;
-            if self.joins(&circle, self.guards.atoms[index].instance, are_near) {
+            let instance = self.guards.atoms[index].instance;
+            let may_wait = !self.is_of_transition(instance) || until <= self.own_time(due) + tolerance;
+            if may_wait && self.joins(&circle, instance, are_near) {
+                waits = true;
                 let root = Waiting { since: due.time, version: due.version };
                 self.queues.waiting.entry(due.number).or_insert(root);
                 due.time = until;
                 self.guards.atoms[index].flip = until;
             }
         }
-        true
+        waits
+    }
+
+    /// When a root is due, whatever it waits for, s.
+    fn own_time(&self, due: &Due) -> f64 {
+        let waiting = self.queues.waiting.get(&due.number).filter(|root| root.version == due.version);
+        waiting.map_or(due.time, |root| root.since)
+    }
+
+    /// The first of the transitions' roots that are one instant at `first`, s.
+    fn since(&self, first: f64, flips: &[Due]) -> f64 {
+        let seeds = flips.iter().filter(|due| due.time == first);
+        let seeds =
+            seeds.filter(|due| self.is_of_transition(self.guards.atoms[due.number as usize].instance));
+        seeds.map(|due| self.own_time(due)).fold(first, f64::min)
+    }
+
+    fn is_of_transition(&self, instance: u32) -> bool {
+        self.guards.definition(instance).origin.transition().is_some()
     }
 
     fn pop_flips(&mut self, window: f64) -> Vec<Due> {

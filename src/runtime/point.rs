@@ -11,6 +11,7 @@ use crate::runtime::population::{ABSENT, Slots};
 use crate::runtime::present::{Boxes, Depth, Views, depth_read};
 use crate::runtime::solve::time_resolution;
 use crate::runtime::truth::{self, Side};
+use crate::runtime::zeros::root_width;
 
 impl Engine<'_, '_> {
     /// The truth of a comparison that jumps, on one side of the present instant. What is given afresh (`At`) meets its surfaces
@@ -67,7 +68,7 @@ impl Engine<'_, '_> {
         }
         let mut jet = [0.0; 3];
         self.program.kernel(atom.rates).eval(&views, time, &mut jet);
-        let width = jet[1].abs() * time_resolution(time);
+        let width = jet[1].abs() * (time_resolution(time) + root_width(time));
         if width.is_finite() { width } else { 0.0 }
     }
 

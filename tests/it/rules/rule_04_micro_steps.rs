@@ -386,6 +386,30 @@ fn rule_04_of_two_who_watch_one_agent_neither_misses_what_the_other_answers() {
 }
 
 #[test]
+fn rule_04_what_waits_is_put_off_no_farther_than_the_tolerance() {
+    let run = simulate_by_both_forms(
+        "agent T { state s = 0  flow { s' = 1 } }
+         agent B(d: real) { discrete k: real = 1 + d, r: real = 0 }
+         interaction I(a: T, b: B) { hit: when a.s >= b.k { b.r := sqrt(a.s - b.k) } }
+         system { t = T()  b = B[3](d = 9e-13*index) }  run { until 2 }",
+    );
+    assert_eq!(run.log(), ["0 I.hit t b[0]", "0 I.hit t b[1]", "0 I.hit t b[2]"]);
+    for (event, late) in run.events.iter().zip([9e-13, 9e-13, 18e-13]) {
+        assert!((event.time - (1.0 + late)).abs() <= 1e-15, "{}", event.time);
+    }
+}
+
+#[test]
+fn rule_12_a_root_does_not_wait_for_what_comes_after_the_end() {
+    let run = simulate_by_both_forms(
+        "agent A { state x = 0  discrete n: int = 0  flow { x' = 1 }
+           go: when x >= 1 - 2e-13 { n := n + 1 }  late: after 1 + 3e-13 { n := n + 10 } }
+         system { a = A() }  run { until 1 }",
+    );
+    assert_eq!(run.log(), ["0 A.go a"]);
+}
+
+#[test]
 fn rule_04_who_shares_nothing_keeps_his_time_and_no_claim_moves_an_event() {
     // Somebody else is some ulps later at each turn; an assert of its own, 5e-13 s.
     let run = simulate_by_both_forms(
