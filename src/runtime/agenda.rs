@@ -123,19 +123,13 @@ impl Agenda {
 
     /// Puts the first of those that are in no order in order.
     fn look_farther(&mut self) {
+        let Some(last) = self.later.len().checked_sub(1) else { return };
         let n_soon = (self.later.len() / SOON_PART).max(SOON_MIN);
-        self.horizon = f64::INFINITY;
-        if n_soon < self.later.len() {
-            let (_, last, _) = self.later.select_nth_unstable_by(n_soon, |a, b| a.time.total_cmp(&b.time));
-            self.horizon = last.time.next_up();
-        }
-        let horizon = self.horizon;
-        let is_soon = |due: &mut Due| due.time < horizon;
-        self.soon = self.later.extract_if(.., is_soon).collect();
-        if self.later.is_empty() {
-            // What is put down next is in order if it comes before the last of these.
-            self.horizon = self.soon.iter().map(|due| due.time).fold(f64::NEG_INFINITY, f64::max).next_up();
-        }
+        let by_time = |a: &Due, b: &Due| a.time.total_cmp(&b.time);
+        let (_, last_soon, _) = self.later.select_nth_unstable_by(n_soon.min(last), by_time);
+        let horizon = last_soon.time.next_up();
+        self.horizon = horizon;
+        self.soon = self.later.extract_if(.., |due| due.time < horizon).collect();
         self.later_from = first_time(&self.later);
     }
 }

@@ -62,11 +62,10 @@ impl Engine<'_, '_> {
         let (now, later): (Vec<Due>, Vec<Due>) =
             self.pop_schedules(window).into_iter().partition(|due| due.time == first);
         let arrived = self.mail.arrive(first);
-        let instance = |due: &Due| self.guards.atoms[due.number as usize].instance;
         let causes: Vec<u32> = flips
             .iter()
             .filter(|due| due.time == first)
-            .map(instance)
+            .map(|due| self.instance_of(due))
             .chain(now.iter().map(|due| due.number))
             .chain(arrived.iter().flat_map(|message| self.listening(message)))
             .collect();
@@ -76,13 +75,12 @@ impl Engine<'_, '_> {
             self.queues.flips.extend(flips);
             return Ok(());
         }
-        let instance = |due: &Due| self.guards.atoms[due.number as usize].instance;
         let is_alone = flips.iter().all(|due| due.time == first);
         let circle = if is_alone { Circle::default() } else { self.circle(&causes) };
         let window = self.since(first, &flips) + self.event_tolerance(first);
-        let (joined, others): (Vec<Due>, Vec<Due>) = flips
-            .into_iter()
-            .partition(|due| due.time == first || due.time <= window && self.shares(&circle, instance(due)));
+        let (joined, others): (Vec<Due>, Vec<Due>) = flips.into_iter().partition(|due| {
+            due.time == first || due.time <= window && self.shares(&circle, self.instance_of(due))
+        });
         self.queues.flips.extend(others);
         let near = joined.iter().map(|due| self.guards.atoms[due.number as usize].near).fold(first, f64::min);
         let changed: Vec<(usize, f64)> = joined.iter().map(|due| (due.number as usize, due.time)).collect();
@@ -194,7 +192,7 @@ impl Engine<'_, '_> {
             let resolution = time_resolution(first);
             let later = flips.iter().filter(|due| due.time > first && due.time <= since + resolution);
             let joining = later
-                .map(|due| (due.time, self.guards.atoms[due.number as usize].instance))
+                .map(|due| (due.time, self.instance_of(due)))
                 .filter(|&(_, instance)| self.is_of_transition(instance))
                 .filter(|&(time, instance)| self.joins(&circle, instance, time - first <= width));
             let (times, who): (Vec<f64>, Vec<u32>) = joining.unzip();
@@ -212,15 +210,14 @@ impl Engine<'_, '_> {
         self.queues.waiting.retain(|&number, waiting| atoms[number as usize].version == waiting.version);
         let mut waits = false;
         for due in flips.iter_mut().filter(|due| due.time < until) {
-            let index = due.number as usize;
-            let instance = self.guards.atoms[index].instance;
+            let instance = self.instance_of(due);
             let may_wait = !self.is_of_transition(instance) || until <= self.own_time(due) + tolerance;
             if may_wait && self.joins(&circle, instance, are_near) {
                 waits = true;
                 let root = Waiting { since: due.time, version: due.version };
                 self.queues.waiting.entry(due.number).or_insert(root);
                 due.time = until;
-                self.guards.atoms[index].flip = until;
+                self.guards.atoms[due.number as usize].flip = until;
             }
         }
         waits
@@ -235,9 +232,13 @@ impl Engine<'_, '_> {
     /// The first of the transitions' roots that are one instant at `first`, s.
     fn since(&self, first: f64, flips: &[Due]) -> f64 {
         let seeds = flips.iter().filter(|due| due.time == first);
-        let seeds =
-            seeds.filter(|due| self.is_of_transition(self.guards.atoms[due.number as usize].instance));
+        let seeds = seeds.filter(|due| self.is_of_transition(self.instance_of(due)));
         seeds.map(|due| self.own_time(due)).fold(first, f64::min)
+    }
+
+    /// The instance whose comparison changes.
+    fn instance_of(&self, due: &Due) -> u32 {
+        self.guards.atoms[due.number as usize].instance
     }
 
     fn is_of_transition(&self, instance: u32) -> bool {

@@ -1,6 +1,6 @@
 //! Rule 12: how a run ends, and where everybody is then.
 
-use crate::harness::{Case, Ended, all_near, near, simulate, simulate_error, words};
+use crate::harness::{Case, Ended, all_near, near, simulate, simulate_by_both_forms, simulate_error, words};
 use hyc::runtime::limits::Limits;
 
 #[test]
@@ -150,4 +150,14 @@ fn rule_12_an_instant_in_which_births_never_end_is_an_error() {
          system { p = P[3](v = index) }  run { until 2.05 }",
     );
     assert_eq!(error.code, "HY0530");
+}
+
+#[test]
+fn rule_12_a_root_does_not_wait_for_what_comes_after_the_end() {
+    let run = simulate_by_both_forms(
+        "agent A { state x = 0  discrete n: int = 0  flow { x' = 1 }
+           go: when x >= 1 - 2e-13 { n := n + 1 }  late: after 1 + 3e-13 { n := n + 10 } }
+         system { a = A() }  run { until 1 }",
+    );
+    assert_eq!(run.log(), ["0 A.go a"]);
 }
